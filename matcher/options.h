@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace hsgm::matcher {
+
+/// How paths start where they enter a window; see docs/algorithm.md.
+enum class Mode {
+    hsgm,       ///< windows with a halo, path costs inherited from the coarser level
+    hsgm_paper, ///< eq. 2 and 3 of Won and Jung to the letter: no halo, no pruning, no prior
+    sgm,        ///< the full image in one piece
+    local,      ///< windows on their own, with an overlap
+};
+
+enum class Cost { census5x5, census7x7, census9x7, hmi };
+
+/// Everything that defines a match, but for the disparity range and the images.
+/// The defaults are those of mode `hsgm`.
+struct Options {
+    Mode mode = Mode::hsgm;
+    Cost cost = Cost::census7x7;
+    int paths = 8;          ///< 4, 5, 8 or 16
+    int levels = 0;         ///< 1..12; 0 = auto
+    int window_px = 64;     ///< multiple of 16, 16..1024
+    int halo_px = 8;        ///< even, 0..window; in mode `local` this is the overlap
+    int p1 = 24;            ///< penalty of a disparity step of one, 0..p2
+    int p2 = 192;           ///< penalty of a larger step where the image is flat, up to 4000
+    bool prior = true;      ///< in flat areas, add a little of the coarser level's sums
+    bool prune = true;      ///< search only round the coarser level's disparities
+    int left_right_px = 1;  ///< tolerance of the left-right check, 0..64; -1 = off
+    int median = 3;         ///< side of the median filter: 3 or 5; 1 = off
+
+    /// Throws std::invalid_argument naming the option, its value and what is allowed.
+    void validate() const;
+
+    /// These options with what the mode dictates put in place of what it has no use for:
+    /// `hsgm_paper` has neither halo, prior nor pruning; `sgm` and `local` have one level.
+    Options resolved() const;
+
+    bool operator==(const Options&) const = default;
+};
+
+std::string_view name(Mode mode);
+std::string_view name(Cost cost);
+/// The enumerator of that name ("hsgm-paper", "census7x7", ...); throws
+/// std::invalid_argument listing the names there are.
+Mode mode_from_name(std::string_view name);
+Cost cost_from_name(std::string_view name);
+
+/// What a matching cost promises: its largest value, and how far round a pixel it reads.
+struct CostTraits {
+    int max;
+    int radius_rows;
+    int radius_cols;
+};
+CostTraits traits(Cost cost);
+
+} // namespace hsgm::matcher
