@@ -21,16 +21,16 @@ enum class Cost { census5x5, census7x7, census9x7, hmi };
 struct Options {
     Mode mode = Mode::hsgm;
     Cost cost = Cost::census7x7;
-    int paths = 8;          ///< 4, 5, 8 or 16
-    int levels = 0;         ///< 1..12; 0 = auto
-    int window_px = 64;     ///< multiple of 16, 16..1024
-    int halo_px = 8;        ///< even, 0..window; in mode `local` this is the overlap
-    int p1 = 24;            ///< penalty of a disparity step of one, 0..p2
-    int p2 = 192;           ///< penalty of a larger step where the image is flat, up to 4000
-    bool prior = true;      ///< in flat areas, add a little of the coarser level's sums
-    bool prune = true;      ///< search only round the coarser level's disparities
-    int left_right_px = 1;  ///< tolerance of the left-right check, 0..64; -1 = off
-    int median = 3;         ///< side of the median filter: 3 or 5; 1 = off
+    int paths = 8;         ///< 4, 5, 8 or 16
+    int levels = 0;        ///< 1..12; 0 = auto
+    int window_px = 64;    ///< multiple of 16, 16..1024
+    int halo_px = 8;       ///< even, 0..window; in mode `local` this is the overlap
+    int p1 = 24;           ///< penalty of a disparity step of one, 0..p2
+    int p2 = 192;          ///< penalty of a larger step where the image is flat, up to 4000
+    bool prior = true;     ///< in flat areas, add a little of the coarser level's sums
+    bool prune = true;     ///< search only round the coarser level's disparities
+    int left_right_px = 1; ///< tolerance of the left-right check, 0..64; -1 = off
+    int median = 3;        ///< side of the median filter: 3 or 5; 1 = off
 
     /// Throws std::invalid_argument naming the option, its value and what is allowed.
     void validate() const;

@@ -22,8 +22,7 @@ public:
     }
     /// A view of mutable pixels serves where constant ones are asked for.
     template <typename U>
-        requires std::is_same_v<const U, T>
-    ImageView(const ImageView<U>& other)
+    requires std::is_same_v<const U, T> ImageView(const ImageView<U>& other)
         : data_(other.data()), size_(other.size()), stride_(other.stride())
     {
     }
@@ -127,12 +126,14 @@ struct Patch {
     ImageView<const T> view_of(const Rect& part) const
     {
         assert(rect.contains(part));
-        return pixels.view().part({part.row - rect.row, part.col - rect.col, part.rows, part.cols});
+        return pixels.view().part(
+            {part.row - rect.row, part.col - rect.col, part.rows, part.cols});
     }
     ImageView<T> view_of(const Rect& part)
     {
         assert(rect.contains(part));
-        return pixels.view().part({part.row - rect.row, part.col - rect.col, part.rows, part.cols});
+        return pixels.view().part(
+            {part.row - rect.row, part.col - rect.col, part.rows, part.cols});
     }
 };
 

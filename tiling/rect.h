@@ -35,9 +35,8 @@ struct Rect {
     }
     bool contains(const Rect& other) const
     {
-        return other.empty() ||
-               (other.row >= row && other.row_end() <= row_end() && other.col >= col &&
-                other.col_end() <= col_end());
+        return other.empty() || (other.row >= row && other.row_end() <= row_end() &&
+                                 other.col >= col && other.col_end() <= col_end());
     }
     bool operator==(const Rect&) const = default;
 };
@@ -76,8 +75,7 @@ inline Rect unite(const Rect& a, const Rect& b)
         return a;
     }
     return rect_between(std::min(a.row, b.row), std::min(a.col, b.col),
-                        std::max(a.row_end(), b.row_end()),
-                        std::max(a.col_end(), b.col_end()));
+                        std::max(a.row_end(), b.row_end()), std::max(a.col_end(), b.col_end()));
 }
 
 /// Grows a rectangle by `px` pixels on all four sides.
@@ -121,8 +119,7 @@ inline Rect round_out(const Rect& r, int cell)
         return r;
     }
     return rect_between(floor_div(r.row, cell) * cell, floor_div(r.col, cell) * cell,
-                        ceil_div(r.row_end(), cell) * cell,
-                        ceil_div(r.col_end(), cell) * cell);
+                        ceil_div(r.row_end(), cell) * cell, ceil_div(r.col_end(), cell) * cell);
 }
 
 } // namespace hsgm::tiling

@@ -17,8 +17,8 @@ LevelSupport support_of_windows(const Rect& windows, Size left, Size right,
     LevelSupport s;
     s.windows = intersect(windows, rect_of(left));
     s.aggregation = intersect(expand(windows, rule.halo_px), rect_of(left));
-    const Rect read = expand_rows_cols(s.aggregation, rule.image_radius_rows,
-                                       rule.image_radius_cols);
+    const Rect read =
+        expand_rows_cols(s.aggregation, rule.image_radius_rows, rule.image_radius_cols);
     s.left_image = intersect(read, rect_of(left));
     s.right_image = intersect(right_reach(read, range), rect_of(right));
     return s;
@@ -31,9 +31,8 @@ Rect read_from_coarser(const LevelSupport& fine, Size fine_size, const SupportRu
 {
     const Rect path_starts =
         intersect(expand(fine.aggregation, rule.path_step_px), rect_of(fine_size));
-    const Rect ranges = rule.range_look_px == 0
-                            ? Rect{}
-                            : expand(halve(fine.windows), rule.range_look_px);
+    const Rect ranges =
+        rule.range_look_px == 0 ? Rect{} : expand(halve(fine.windows), rule.range_look_px);
     return unite(halve(path_starts), ranges);
 }
 

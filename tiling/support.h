@@ -11,11 +11,11 @@ namespace hsgm::tiling {
 /// How far a matched pixel looks, in pixels of its own level unless said otherwise.
 /// These numbers belong to the matcher's options; tile sizes do not appear.
 struct SupportRule {
-    int window_px = 64;     ///< side of an aggregation window, on the global grid
-    int halo_px = 8;        ///< pixels a path runs before it enters its window
-    int path_step_px = 1;   ///< longest step of a path: 1, or 2 with sixteen paths
-    int range_look_px = 2;  ///< pixels of the coarser level read beyond a window's footprint
-                            ///< to find its disparity range; 0 without pruning
+    int window_px = 64;        ///< side of an aggregation window, on the global grid
+    int halo_px = 8;           ///< pixels a path runs before it enters its window
+    int path_step_px = 1;      ///< longest step of a path: 1, or 2 with sixteen paths
+    int range_look_px = 2;     ///< pixels of the coarser level read beyond a window's footprint
+                               ///< to find its disparity range; 0 without pruning
     int image_radius_rows = 3; ///< rows of the image that a cost or gate reads around a pixel
     int image_radius_cols = 3; ///< the same for columns
     bool coarsest_whole = true; ///< the coarsest level is solved as one piece, not by windows
