@@ -76,8 +76,7 @@ void BlockPainter::draw_span(const RowView::PieceSpan& p, int sub_row)
     for (int i = index_of(p.span.begin); i < end; ++i) {
         const int c = i / kSamples;
         const int sub_col = i % kSamples;
-        const double disparity_px =
-            p.span.disparity(block_.col + c + sample_offset(sub_col));
+        const double disparity_px = p.span.disparity(block_.col + c + sample_offset(sub_col));
         const int sample = c * kPerPixel + sub_row * kSamples + sub_col;
         if (disparity_px > nearest_[sample]) {
             nearest_[sample] = disparity_px;
@@ -135,15 +134,15 @@ double BlockPainter::ground_brightness(double column, double y, double disparity
 double BlockPainter::ground_brightness(double column, double y) const
 {
     const bool left = view_ == View::left;
-    return ground_brightness(
-        column, y, left ? 0 : landscape_.ground().disparity_from_right(column, y));
+    return ground_brightness(column, y,
+                             left ? 0 : landscape_.ground().disparity_from_right(column, y));
 }
 
 double BlockPainter::piece_brightness(const Piece& p, double column, double y) const
 {
     // d = a + b x and x = x_right + d, so x = (x_right + a) / (1 - b).
-    const double x = view_ == View::left ? column
-                                         : (column + p.disparity(0, y)) / (1 - p.slope_x);
+    const double x =
+        view_ == View::left ? column : (column + p.disparity(0, y)) / (1 - p.slope_x);
     return landscape_.piece_brightness(p, x, y);
 }
 

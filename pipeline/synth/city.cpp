@@ -76,7 +76,7 @@ Object CityMap::roofed(const Lot& lot, std::uint64_t n, double height_px) const
     object.height_px = height_px;
     object.texture = city_.texture;
     const double spread = choose(lot.seed, kMean + n) - 0.5;
-    object.texture.mean = std::clamp(city_.texture.mean + 0.5 * spread, 0.1, 0.9);
+    object.texture.mean = std::clamp(city_.texture.mean + 0.6 * spread, 0.12, 0.88);
     if (lot.plain) {
         object.texture.contrast = city_.plain_contrast;
     }
@@ -94,7 +94,8 @@ void fit_turned(Object& object, double side_px)
     if (object.angle_deg == 0) {
         return;
     }
-    const double diagonal = std::hypot(object.length_px, object.width_px);
+    const double diagonal =
+        std::sqrt(object.length_px * object.length_px + object.width_px * object.width_px);
     const double scale = std::min(1.0, side_px / diagonal);
     object.length_px *= scale;
     object.width_px *= scale;
@@ -188,10 +189,14 @@ void CityMap::append_objects(int row, int col, std::vector<SeededObject>& object
 {
     const Lot here = lot(row, col);
     switch (here.kind) {
-    case LotKind::park: return append_trees(here, objects);
-    case LotKind::block: return append_block(here, objects);
-    case LotKind::tower: return append_tower(here, objects);
-    case LotKind::houses: return append_houses(here, objects);
+    case LotKind::park:
+        return append_trees(here, objects);
+    case LotKind::block:
+        return append_block(here, objects);
+    case LotKind::tower:
+        return append_tower(here, objects);
+    case LotKind::houses:
+        return append_houses(here, objects);
     }
 }
 
@@ -206,7 +211,7 @@ Texture CityMap::ground_at(double x, double y, Texture ground) const
     // where this weight is 0.
     const double inside = smooth_step(from_border - city_.street_px / 2, 1.5);
     const std::uint64_t seed = hash_at(seed_, row, col);
-    constexpr double kStreetTone = -0.14;
+    constexpr double kStreetTone = -0.2;
     const double lot_tone = 0.24 * (choose(seed, kTone) - 0.5);
     const bool plain = choose(seed, kPlain) < city_.plain;
     const double lot_contrast = plain ? city_.plain_contrast : ground.contrast;

@@ -78,8 +78,8 @@ double Landscape::contrast_scale(double x, double y) const
 {
     double scale = 1;
     for (const LowTexture& area : scene_.low_texture) {
-        const double inside = std::min({x - area.x, area.x + area.cols - x, y - area.y,
-                                        area.y + area.rows - y});
+        const double inside =
+            std::min({x - area.x, area.x + area.cols - x, y - area.y, area.y + area.rows - y});
         scale *= 1 + (area.contrast_scale - 1) * smooth_step(inside, 1.5);
     }
     return scale;

@@ -97,8 +97,7 @@ double Piece::highest_px() const
 {
     const double along = slope_x * cos_angle + slope_y * sin_angle;
     const double across = slope_y * cos_angle - slope_x * sin_angle;
-    return disparity_px + std::abs(along) * u_half +
-           std::max(across * v_begin, across * v_end);
+    return disparity_px + std::abs(along) * u_half + std::max(across * v_begin, across * v_end);
 }
 
 Span span_on_row(const Piece& piece, View view, double y)
@@ -130,7 +129,7 @@ void append_pieces(const Object& object, std::uint64_t seed, const TerrainSurfac
         return;
     }
     // A gable: the ridge is at v = 0, and its two sides catch the light differently.
-    constexpr double kShade = 0.06;
+    constexpr double kShade = 0.08;
     const double steepness = object.rise_px / (object.width_px / 2);
     p.disparity_px += object.rise_px;
     Piece far_side = p;

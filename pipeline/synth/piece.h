@@ -21,7 +21,7 @@ struct Piece {
     double u_half = 0;
     double v_begin = 0;
     double v_end = 0;
-    bool ellipse = false;     ///< cut by the ellipse with the half axes below
+    bool ellipse = false; ///< cut by the ellipse with the half axes below
     double ellipse_v_half = 0;
 
     // Disparity at the centre and its gradient, per column and per row.

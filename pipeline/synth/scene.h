@@ -23,10 +23,10 @@ namespace hsgm::synth {
 
 /// Band-limited noise painted on a surface.
 struct Texture {
-    double mean = 0.45;      ///< brightness, 0..1
-    double contrast = 0.10;  ///< standard deviation of the brightness, 0..0.5
-    double finest_px = 2.5;  ///< spacing of the finest grain; below 2 the pixels alias
-    int octaves = 5;         ///< grains of finest_px, 2 finest_px, 4 ..., equally strong
+    double mean = 0.45;     ///< brightness, 0..1
+    double contrast = 0.06; ///< standard deviation of the brightness, 0..0.5
+    double finest_px = 2.5; ///< spacing of the finest grain; below 2 the pixels alias
+    int octaves = 4;        ///< grains of finest_px, 2 finest_px, 4 ..., equally strong
 };
 
 /// A sinusoid of disparity: hills.
@@ -71,12 +71,12 @@ struct Object {
 
 /// A town without end, made from a hash of grid cells: houses, blocks, towers, parks.
 struct City {
-    double cell_px = 96;    ///< side of a lot with its half of the streets, >= 32
-    double street_px = 16;  ///< width of the streets between lots
-    double fill = 0.8;      ///< share of the lots that are built on
-    double slanted = 0.4;   ///< share of the built lots with sloped or gable roofs
-    double rotated = 0.25;  ///< share of the built lots at an angle to the streets
-    double plain = 0.1;     ///< share of the lots with hardly any texture
+    double cell_px = 96;            ///< side of a lot with its half of the streets, >= 32
+    double street_px = 16;          ///< width of the streets between lots
+    double fill = 0.8;              ///< share of the lots that are built on
+    double slanted = 0.4;           ///< share of the built lots with sloped or gable roofs
+    double rotated = 0.25;          ///< share of the built lots at an angle to the streets
+    double plain = 0.1;             ///< share of the lots with hardly any texture
     double plain_contrast = 0.0015; ///< contrast there
     double height_min_px = 3;
     double height_max_px = 40; ///< of anything, roofs included

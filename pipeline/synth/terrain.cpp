@@ -36,8 +36,7 @@ TerrainSurface::TerrainSurface(const Terrain& terrain)
     for (const Wave& wave : terrain.waves) {
         const double direction = wave.direction_deg / 360;
         waves_.push_back({wave.amplitude_px, cosine_of_turns(direction) / wave.wavelength_px,
-                          sine_of_turns(direction) / wave.wavelength_px,
-                          wave.phase_deg / 360});
+                          sine_of_turns(direction) / wave.wavelength_px, wave.phase_deg / 360});
     }
 }
 
