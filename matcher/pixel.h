@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+namespace hsgm::matcher {
+
+/// Pixels are 16-bit; this value means nodata. A valid 65535 is stored as 65534.
+constexpr std::uint16_t kNodataPixel = 65535;
+
+constexpr bool is_valid(std::uint16_t pixel)
+{
+    return pixel != kNodataPixel;
+}
+
+/// Maps 16-bit pixels to the 8-bit copy that penalties, texture gate and HMI use.
+/// (0, 255) is the identity for 8-bit images.
+struct Tone {
+    int lo = 0;
+    int hi = 255;
+
+    constexpr std::uint8_t operator()(std::uint16_t pixel) const
+    {
+        if (!is_valid(pixel) || pixel <= lo) {
+            return 0;
+        }
+        return pixel >= hi ? 255 : static_cast<std::uint8_t>((pixel - lo) * 255 / (hi - lo));
+    }
+    bool operator==(const Tone&) const = default;
+};
+
+} // namespace hsgm::matcher
