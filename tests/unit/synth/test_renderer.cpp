@@ -141,3 +141,36 @@ TEST_CASE("a view's disparity bounds hold everywhere")
         }
     }
 }
+
+TEST_CASE("the right image warped by the truth is the left image")
+{
+    Scene scene = small_city();
+    scene.left = {};
+    scene.right = {};
+    const Renderer r(scene);
+    const auto left = image(r, View::left);
+    const auto right = image(r, View::right);
+    const auto d = truth(r, View::left);
+    const auto seen = visible(r, View::left);
+    double with_truth = 0;
+    double one_px_off = 0;
+    int pixels = 0;
+    for (int row = 0; row < scene.size.rows; ++row) {
+        for (int col = 60; col + 2 < scene.size.cols; ++col) {
+            const double x = col - double{d(row, col)};
+            const int x0 = static_cast<int>(std::floor(x));
+            if (!seen(row, col) || x0 < 0 || x0 + 2 >= scene.size.cols) {
+                continue;
+            }
+            const auto right_at = [&](int first) {
+                return right(row, first) + (x - x0) * (right(row, first + 1) - right(row, first));
+            };
+            with_truth += std::abs(left(row, col) - right_at(x0));
+            one_px_off += std::abs(left(row, col) - right_at(x0 + 1));
+            ++pixels;
+        }
+    }
+    CHECK(pixels > 70000);
+    // What is left with truth comes from linear interpolation and from mixed edge pixels.
+    CHECK(with_truth / one_px_off < 0.35);
+}
