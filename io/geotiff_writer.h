@@ -58,11 +58,16 @@ public:
     /// earlier piece). T must be the raster's pixel type. Throws StorageError where the disk
     /// is full or fails, and std::logic_error where a pixel comes twice.
     template <typename T>
-    void write(const tiling::Rect& rect, tiling::ImageView<const T> pixels)
+    void write(const tiling::Rect& rect, tiling::ImageView<T> pixels)
     {
         write_bytes(rect, reinterpret_cast<const std::byte*>(pixels.data()), pixels.size(),
                     pixels.stride() * static_cast<std::ptrdiff_t>(sizeof(T)),
-                    pixel_type_of<T>());
+                    pixel_type_of<std::remove_const_t<T>>());
+    }
+    template <typename T>
+    void write(const tiling::Rect& rect, const tiling::Image<T>& pixels)
+    {
+        write(rect, pixels.view());
     }
 
     /// Fills pixels that nobody wrote with the nodata value (else 0), closes the file, opens

@@ -36,7 +36,9 @@ struct RasterSource::State {
     std::vector<Channel> channels;      // one, or red, green and blue
     std::vector<GDALRasterBandH> masks; // a zero in any of them: no value
     std::vector<double> buffer;         // of one strip, kept between reads
+    bool suspect = false;               // a read failed, so GDAL's caches may hold anything
 
+    void open();
     void open_mask_file();
     void read_band(GDALRasterBandH band, const std::string& path, const Rect& window,
                    ImageView<double> values) const;
@@ -45,6 +47,15 @@ struct RasterSource::State {
     void apply_masks(const Rect& strip, ImageView<double> values);
     ImageView<double> buffer_view(Size size, int index, int count);
 };
+
+void RasterSource::State::open()
+{
+    dataset = open_raster(spec.path);
+    ErrorCollector errors; // some drivers grumble about masks and metadata; that is no news
+    channels = choose_channels(dataset.get(), spec);
+    masks = find_masks(dataset.get(), channels, spec);
+    open_mask_file();
+}
 
 void RasterSource::State::open_mask_file()
 {
@@ -75,7 +86,9 @@ void RasterSource::State::read_band(GDALRasterBandH band, const std::string& pat
         window.cols, window.rows, GDT_Float64, sizeof(double),
         static_cast<GSpacing>(values.stride()) * static_cast<GSpacing>(sizeof(double)),
         nullptr);
-    if (result != CE_None) {
+    // GDAL sometimes reports an error, fills a block with zeros and yet calls it a success: a
+    // TIFF whose table of block lengths could not be read looks like one with empty blocks.
+    if (result != CE_None || errors.failed()) {
         throw InputError("Cannot read " + to_text(window) + " of " + path + "; " +
                          errors.quote() + ".");
     }
@@ -142,11 +155,7 @@ void RasterSource::State::read_strip(const Rect& strip, ImageView<double> values
 RasterSource::RasterSource(ImageSpec spec) : state_(std::make_unique<State>())
 {
     state_->spec = std::move(spec);
-    state_->dataset = open_raster(state_->spec.path);
-    ErrorCollector errors; // some drivers grumble about masks and metadata; that is no news
-    state_->channels = choose_channels(state_->dataset.get(), state_->spec);
-    state_->masks = find_masks(state_->dataset.get(), state_->channels, state_->spec);
-    state_->open_mask_file();
+    state_->open();
 }
 
 RasterSource::~RasterSource() = default;
@@ -223,6 +232,9 @@ void RasterSource::read(const Rect& window, ImageView<double> values)
     if (values.size() != window.size()) {
         throw std::invalid_argument("RasterSource::read: view and window differ in size");
     }
+    if (std::exchange(state_->suspect, true)) {
+        state_->open(); // what the failed read left in GDAL must not pass for pixels
+    }
     // Strips end at block borders of the file, so no block is decoded for two of them.
     const int block = block_size().rows;
     const int rows =
@@ -233,6 +245,7 @@ void RasterSource::read(const Rect& window, ImageView<double> values)
         state_->read_strip(strip, values.part({row - window.row, 0, strip.rows, strip.cols}));
         row = end;
     }
+    state_->suspect = false;
 }
 
 } // namespace hsgm::io

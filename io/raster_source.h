@@ -45,7 +45,8 @@ public:
     ///     three bands, because a saturated colour has zeros too),
     ///   - is zero in the file's own mask or alpha band, or in the mask file,
     ///   - is stored as NaN or infinity.
-    /// Throws InputError with path, window and GDAL's message where the file cannot be read.
+    /// Throws InputError with path, window and GDAL's message where the file cannot be read;
+    /// the next read opens the file afresh, so trying again is safe.
     void read(const tiling::Rect& window, tiling::ImageView<double> values);
 
 private:
