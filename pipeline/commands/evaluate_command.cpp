@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace hsgm::commands {
+namespace hsgm::pipeline {
 
 namespace {
 
@@ -40,7 +40,7 @@ than 4 px from every border, with a 95 % interval. 1: the borders do not show. W
 the jumps are those of the error; without, those of the disparity itself.)";
 
 struct Options {
-    stages::DisparityInputs inputs;
+    DisparityInputs inputs;
     std::string truth_nodata;
     std::string nonoccluded;
     std::vector<double> thresholds_px{0.5, 1, 2, 4};
@@ -61,9 +61,9 @@ double parse_nodata(const std::string& text)
     return value;
 }
 
-stages::DisparityInputs inputs_of(const Options& options)
+DisparityInputs inputs_of(const Options& options)
 {
-    stages::DisparityInputs inputs = options.inputs;
+    DisparityInputs inputs = options.inputs;
     if (!options.truth_nodata.empty()) {
         inputs.truth_nodata = parse_nodata(options.truth_nodata);
     }
@@ -155,7 +155,7 @@ void run_seams(const Options& options)
     if (options.tile_px != 0) {
         add("tile_", options.tile_px);
     }
-    const std::vector<SeamScore> scores = stages::score_seams(inputs_of(options), cells_px);
+    const std::vector<SeamScore> scores = score_seams(inputs_of(options), cells_px);
     for (std::size_t i = 0; i < scores.size(); ++i) {
         seams[i].second = scores[i];
     }
@@ -165,7 +165,7 @@ void run_seams(const Options& options)
 void run_disparity(const Options& options)
 {
     const DisparityScore score =
-        stages::score_disparity(inputs_of(options), options.thresholds_px);
+        score_disparity(inputs_of(options), options.thresholds_px);
     options.json ? print_score_as_json(score) : print_score(score);
 }
 
@@ -226,4 +226,4 @@ CLI::App* add_evaluate_command(CLI::App& app)
     return evaluate;
 }
 
-} // namespace hsgm::commands
+} // namespace hsgm::pipeline

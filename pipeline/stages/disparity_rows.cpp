@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace hsgm::stages {
+namespace hsgm::pipeline {
 
 namespace {
 
@@ -174,4 +174,4 @@ void for_each_row(const DisparityInputs& inputs, const RowVisitor& visit)
     }
 }
 
-} // namespace hsgm::stages
+} // namespace hsgm::pipeline

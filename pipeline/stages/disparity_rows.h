@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-namespace hsgm::stages {
+namespace hsgm::pipeline {
 
 /// Which rasters are compared, and how their pixels are to be read. Paths are what GDAL
 /// opens; an empty one means that there is none.
@@ -42,4 +42,4 @@ using RowVisitor = std::function<void(std::span<const float> test_px,
 /// has another size than the test.
 void for_each_row(const DisparityInputs& inputs, const RowVisitor& visit);
 
-} // namespace hsgm::stages
+} // namespace hsgm::pipeline

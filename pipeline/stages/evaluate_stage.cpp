@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace hsgm::stages {
+namespace hsgm::pipeline {
 
 namespace {
 
@@ -60,4 +60,4 @@ std::vector<evaluate::SeamScore> score_seams(const DisparityInputs& inputs,
     return scores;
 }
 
-} // namespace hsgm::stages
+} // namespace hsgm::pipeline

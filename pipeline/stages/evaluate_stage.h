@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace hsgm::stages {
+namespace hsgm::pipeline {
 
 /// A disparity map against truth, files in, figures out; memory for a strip of rows. Throws
 /// io::ConfigError for what cannot be asked, io::InputError for what cannot be read.
@@ -18,4 +18,4 @@ evaluate::DisparityScore score_disparity(const DisparityInputs& inputs,
 std::vector<evaluate::SeamScore> score_seams(const DisparityInputs& inputs,
                                              const std::vector<int>& cells_px);
 
-} // namespace hsgm::stages
+} // namespace hsgm::pipeline

@@ -17,7 +17,7 @@
 #include <string>
 
 using namespace hsgm;
-using namespace hsgm::stages;
+using namespace hsgm::pipeline;
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 using namespace hsgm;
-using namespace hsgm::stages;
+using namespace hsgm::pipeline;
 
 // The published PatchMatch Stereo maps (Middlebury v2, algorithm 117) and their published
 // scores, from the data folder: environment variable HSGM_DATA_DIR, or beside the sources.
