@@ -20,7 +20,9 @@ inline constexpr std::array<std::pair<synth::Shape, std::string_view>, 2> kShape
     {{synth::Shape::rectangle, "rectangle"}, {synth::Shape::ellipse, "ellipse"}}};
 
 inline constexpr std::array<std::pair<synth::Roof, std::string_view>, 3> kRoofNames{
-    {{synth::Roof::flat, "flat"}, {synth::Roof::slope, "slope"}, {synth::Roof::gable, "gable"}}};
+    {{synth::Roof::flat, "flat"},
+     {synth::Roof::slope, "slope"},
+     {synth::Roof::gable, "gable"}}};
 
 template <typename Visitor>
 void visit_fields(Visitor& v, synth::Texture& t)
