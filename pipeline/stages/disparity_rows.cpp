@@ -114,8 +114,8 @@ void fill_mask(const Rasters& rasters, const DisparityInputs& inputs, int r,
 {
     std::fill(counts.begin(), counts.end(), std::uint8_t{255});
     if (rasters.truth_right) {
-        evaluate::nonoccluded_by_cross_check(rasters.truth->row(r),
-                                             rasters.truth_right->row(r), counts);
+        evaluate::nonoccluded_by_cross_check(rasters.truth->row(r), rasters.truth_right->row(r),
+                                             counts);
     } else if (inputs.zbuffer) {
         evaluate::nonoccluded_by_zbuffer(rasters.truth->row(r), rasters.test->size().cols,
                                          counts);
@@ -125,8 +125,9 @@ void fill_mask(const Rasters& rasters, const DisparityInputs& inputs, int r,
     }
     const std::span<const float> mask = rasters.mask->row(r);
     for (std::size_t c = 0; c < counts.size(); ++c) {
-        const bool chosen = inputs.mask_value ? mask[c] == static_cast<float>(*inputs.mask_value)
-                                              : mask[c] != 0 && !std::isnan(mask[c]);
+        const bool chosen = inputs.mask_value
+                                ? mask[c] == static_cast<float>(*inputs.mask_value)
+                                : mask[c] != 0 && !std::isnan(mask[c]);
         counts[c] = chosen ? counts[c] : 0;
     }
 }
