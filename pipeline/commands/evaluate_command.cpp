@@ -164,8 +164,7 @@ void run_seams(const Options& options)
 
 void run_disparity(const Options& options)
 {
-    const DisparityScore score =
-        score_disparity(inputs_of(options), options.thresholds_px);
+    const DisparityScore score = score_disparity(inputs_of(options), options.thresholds_px);
     options.json ? print_score_as_json(score) : print_score(score);
 }
 
@@ -175,8 +174,9 @@ void add_raster_options(CLI::App& command, Options& o)
     command.add_option("--mask", o.inputs.mask, "raster whose zeros do not count");
     command.add_option("--mask-value", o.inputs.mask_value,
                        "only pixels with this value of the mask count");
-    command.add_option("--scale", o.inputs.truth_scale,
-                       "stored values of the truth per pixel of disparity")
+    command
+        .add_option("--scale", o.inputs.truth_scale,
+                    "stored values of the truth per pixel of disparity")
         ->capture_default_str();
     command.add_option("--test-scale", o.inputs.test_scale, "likewise of the map under test")
         ->capture_default_str();
@@ -186,9 +186,10 @@ void add_raster_options(CLI::App& command, Options& o)
     command.add_option("--truth-right", o.inputs.truth_right,
                        "truth of the right view: pixels on which both disagree by more than "
                        "1 px do not count");
-    command.add_option("--nonoccluded", o.nonoccluded,
-                       "zbuffer: pixels behind something nearer, by the truth of the left "
-                       "view alone, do not count")
+    command
+        .add_option("--nonoccluded", o.nonoccluded,
+                    "zbuffer: pixels behind something nearer, by the truth of the left "
+                    "view alone, do not count")
         ->check(CLI::IsMember({"zbuffer"}));
     command.add_flag("--json", o.json, "print JSON");
 }

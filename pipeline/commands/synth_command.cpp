@@ -1,5 +1,6 @@
 #include "pipeline/commands/synth_command.h"
 
+#include "io/pending_file.h"
 #include "pipeline/stages/scene_config.h"
 #include "pipeline/stages/synth_stage.h"
 
@@ -32,8 +33,9 @@ struct Options {
 
 void run(const Options& options)
 {
-    const synth::Scene scene = read_scene(options.scene, options.overrides);
+    const auto [scene, used_yaml] = read_scene(options.scene, options.overrides);
     const synth::DisparityBounds bounds = write_scene(scene, options.folder);
+    io::write_text_file(options.folder + "/scene.used.yaml", used_yaml);
     fmt::print("{}: {} rows x {} columns, disparities within {:.0f} to {:.0f} px\n",
                options.folder, scene.size.rows, scene.size.cols, std::floor(bounds.min_px),
                std::ceil(bounds.max_px));

@@ -7,12 +7,15 @@
 
 namespace hsgm::pipeline {
 
-/// Reads a scene from a YAML file; what it leaves out keeps its default. `overrides` are
-/// "key=value" as of `--set`, for example "size=[200, 300]" or "terrain.offset_px=5". Throws
-/// io::ConfigError for unknown keys, values of a wrong type, and scenes that are not valid.
-synth::Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+struct SceneConfig {
+    synth::Scene scene;
+    std::string used_yaml; ///< the complete scene, defaults included; reads back as the same
+};
 
-/// The complete scene as YAML that read_scene understands: every number in full.
-std::string scene_as_yaml(const synth::Scene& scene);
+/// Reads a scene from a YAML file; what it leaves out keeps its default, and a `city` stands
+/// only where the file has that section. `overrides` are "key=value" as of `--set`, for
+/// example "size=[200, 300]" or "terrain.offset_px=5". Throws io::ConfigError for unknown
+/// keys, values of a wrong kind, and scenes that are not valid.
+SceneConfig read_scene(const std::string& path, const std::vector<std::string>& overrides = {});
 
 } // namespace hsgm::pipeline

@@ -2,8 +2,6 @@
 
 #include "io/error.h"
 #include "io/geotiff_writer.h"
-#include "io/pending_file.h"
-#include "pipeline/stages/scene_config.h"
 #include "pipeline/synth/renderer.h"
 
 #include <tbb/parallel_for.h>
@@ -114,7 +112,6 @@ synth::DisparityBounds write_scene(const synth::Scene& scene, const std::string&
     visible.band_descriptions = {"255 = visible in both images"};
     write_raster<std::uint8_t>(folder + "/visible_left.tif", scene.size, visible,
                                [&](const Rect& part, auto out) { r.visible_left(part, out); });
-    io::write_text_file(folder + "/scene.used.yaml", scene_as_yaml(scene));
     return r.disparity_bounds();
 }
 

@@ -12,7 +12,6 @@ namespace hsgm::pipeline {
 ///   left.tif, right.tif              uint8 for scenes of 8 bits, else uint16; nodata 0
 ///   truth_left.tif, truth_right.tif  float32, disparity x_left - x_right in pixels
 ///   visible_left.tif                 uint8: 255 = shows in both images
-///   scene.used.yaml                  the complete scene, written last
 ///
 /// Strip by strip, on all threads that TBB lends; memory for a few hundred rows. The files
 /// do not depend on the number of threads. Returns the bounds of the disparity, which a

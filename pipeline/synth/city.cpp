@@ -76,7 +76,7 @@ Object CityMap::roofed(const Lot& lot, std::uint64_t n, double height_px) const
     object.height_px = height_px;
     object.texture = city_.texture;
     const double spread = choose(lot.seed, kMean + n) - 0.5;
-    object.texture.mean = std::clamp(city_.texture.mean + 0.6 * spread, 0.12, 0.88);
+    object.texture.mean *= 1 + 1.2 * spread;
     if (lot.plain) {
         object.texture.contrast = city_.plain_contrast;
     }
@@ -180,7 +180,8 @@ void CityMap::append_trees(const Lot& lot, std::vector<SeededObject>& objects) c
         tree.center_x = lot.center_x + play * (2 * choose(lot.seed, kPlace + n) - 1);
         tree.center_y = lot.center_y + play * (2 * choose(lot.seed, kPlace + 10 + n) - 1);
         tree.height_px = height_px(lot, n, 0.15);
-        tree.texture = {0.26, 0.07, 2.5, 3};
+        tree.texture = city_.texture;
+        tree.texture.mean *= 0.6;
         objects.push_back({tree, child_seed(lot.seed, kPaint + n)});
     }
 }
@@ -211,11 +212,11 @@ Texture CityMap::ground_at(double x, double y, Texture ground) const
     // where this weight is 0.
     const double inside = smooth_step(from_border - city_.street_px / 2, 1.5);
     const std::uint64_t seed = hash_at(seed_, row, col);
-    constexpr double kStreetTone = -0.2;
-    const double lot_tone = 0.24 * (choose(seed, kTone) - 0.5);
+    constexpr double kStreetTone = 0.58; // of the ground's brightness
+    const double lot_tone = between(0.75, 1.25, choose(seed, kTone));
     const bool plain = choose(seed, kPlain) < city_.plain;
     const double lot_contrast = plain ? city_.plain_contrast : ground.contrast;
-    ground.mean += between(kStreetTone, lot_tone, inside);
+    ground.mean *= between(kStreetTone, lot_tone, inside);
     ground.contrast = between(0.5 * ground.contrast, lot_contrast, inside);
     return ground;
 }

@@ -129,15 +129,15 @@ void append_pieces(const Object& object, std::uint64_t seed, const TerrainSurfac
         return;
     }
     // A gable: the ridge is at v = 0, and its two sides catch the light differently.
-    constexpr double kShade = 0.08;
+    constexpr double kShade = 0.16; // of the brightness
     const double steepness = object.rise_px / (object.width_px / 2);
     p.disparity_px += object.rise_px;
     Piece far_side = p;
     p.v_end = 0;
-    p.texture.mean += kShade;
+    p.texture.mean *= 1 + kShade;
     tilt_across(p, steepness);
     far_side.v_begin = 0;
-    far_side.texture.mean -= kShade;
+    far_side.texture.mean *= 1 - kShade;
     tilt_across(far_side, -steepness);
     pieces.push_back(p);
     pieces.push_back(far_side);

@@ -143,8 +143,8 @@ TEST_CASE("a scene's files are the same bytes with any number of threads")
     write_scene(little_city(), folder / "many");
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     write_scene(little_city(), folder / "one");
-    for (const char* name : {"left.tif", "right.tif", "truth_left.tif", "truth_right.tif",
-                             "visible_left.tif"}) {
+    for (const char* name :
+         {"left.tif", "right.tif", "truth_left.tif", "truth_right.tif", "visible_left.tif"}) {
         CAPTURE(name);
         CHECK(bytes_of_file(folder / "many" + "/" + name) ==
               bytes_of_file(folder / "one" + "/" + name));

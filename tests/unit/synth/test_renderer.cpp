@@ -163,7 +163,8 @@ TEST_CASE("the right image warped by the truth is the left image")
                 continue;
             }
             const auto right_at = [&](int first) {
-                return right(row, first) + (x - x0) * (right(row, first + 1) - right(row, first));
+                return right(row, first) +
+                       (x - x0) * (right(row, first + 1) - right(row, first));
             };
             with_truth += std::abs(left(row, col) - right_at(x0));
             one_px_off += std::abs(left(row, col) - right_at(x0 + 1));
