@@ -19,8 +19,8 @@ matcher::Options read_matcher(ConfigSection section)
     matcher::Options o;
     o.mode = matcher::mode_from_name(
         section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
-    o.cost = matcher::cost_from_name(section.choice(
-        "cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
+    o.cost = matcher::cost_from_name(
+        section.choice("cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
     o.paths = section.integer("paths", o.paths, 4, 16);
     o.levels = section.integer_or("levels", "auto", std::nullopt, 1, 12).value_or(0);
     o.window_px = section.integer("window", o.window_px, 16, 1024);
@@ -83,7 +83,8 @@ RectifiedGeometry read_geometry(ConfigSection section)
                      "gives a depth only together: set both focal_px and baseline_m");
     }
     if (geometry.focal_px && geometry.height_per_px_m) {
-        section.fail("focal_px", "makes a depth and height_per_px_m a height: give one of them");
+        section.fail("focal_px",
+                     "makes a depth and height_per_px_m a height: give one of them");
     }
     return geometry;
 }
@@ -137,8 +138,9 @@ void check_device(const std::string& device)
         return;
     }
     if (device == "cuda" || device.rfind("cuda:", 0) == 0) {
-        throw BudgetError("device '" + device +
-                          "' was asked for, but this build has no CUDA worker; use auto or cpu");
+        throw BudgetError(
+            "device '" + device +
+            "' was asked for, but this build has no CUDA worker; use auto or cpu");
     }
     throw io::ConfigError("the device must be auto, cpu, cuda or cuda:N, not '" + device + "'");
 }

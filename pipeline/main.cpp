@@ -86,14 +86,17 @@ int main(int argc, char** argv)
     std::signal(SIGTERM, on_signal);
     hsgm::io::initialise_gdal(hsgm::pipeline::gdal_cache_bytes());
 
-    CLI::App app{"hsgm: large-scale dense matching of stereo pairs, the same bits for every tiling"};
+    CLI::App app{
+        "hsgm: large-scale dense matching of stereo pairs, the same bits for every tiling"};
     app.footer(kHelp);
     app.set_version_flag("--version", std::string("hsgm ") + HSGM_VERSION);
     app.require_subcommand(1);
     std::string log_level = "info";
     app.add_option("--log-level", log_level, "debug, info, warn, error or off")
         ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
-        ->each([](const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); });
+        ->each([](const std::string& level) {
+            spdlog::set_level(spdlog::level::from_str(level));
+        });
     hsgm::pipeline::add_match_command(app);
     hsgm::pipeline::add_run_command(app);
     hsgm::pipeline::add_plan_command(app);

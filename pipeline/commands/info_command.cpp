@@ -1,7 +1,7 @@
 #include "pipeline/commands/info_command.h"
 
 #include "io/gdal_session.h"
-#include "matcher/version.h"
+#include "matcher/matcher.h"
 #include "pipeline/budget.h"
 
 #include <CLI/CLI.hpp>

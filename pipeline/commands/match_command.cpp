@@ -42,9 +42,10 @@ int parse_integer(std::string_view text, const std::string& whole)
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || text.empty()) {
-        throw io::ConfigError("--disparity must be MIN,MAX in whole pixels, for example 0,63 or "
-                              "-64,64, not '" +
-                              whole + "'");
+        throw io::ConfigError(
+            "--disparity must be MIN,MAX in whole pixels, for example 0,63 or "
+            "-64,64, not '" +
+            whole + "'");
     }
     return value;
 }

@@ -42,9 +42,9 @@ nlohmann::ordered_json plan_json(const PlannedJob& planned)
     json["tiles"] = b.tiles;
     json["tiles_in_flight"] = b.tiles_in_flight;
     json["threads"] = b.threads;
-    json["memory_bytes"] = {{"allowed", b.memory_bytes},   {"estimate", b.estimate_bytes},
-                            {"prepare", b.prepare_bytes},  {"coarse", b.coarse_bytes},
-                            {"tiles", b.tiles_bytes},      {"refine", b.refine_bytes}};
+    json["memory_bytes"] = {{"allowed", b.memory_bytes},  {"estimate", b.estimate_bytes},
+                            {"prepare", b.prepare_bytes}, {"coarse", b.coarse_bytes},
+                            {"tiles", b.tiles_bytes},     {"refine", b.refine_bytes}};
     json["disk_bytes"] = {{"scratch", b.scratch_disk_bytes}, {"outputs", b.output_disk_bytes}};
     return json;
 }
@@ -70,10 +70,11 @@ void print_table(const PlannedJob& planned)
     }
     fmt::print("tiles     {}\n", tile_text(b));
     fmt::print("threads   {}\n", b.threads);
-    fmt::print("memory    {:.0f} MiB at most, of {:.0f} allowed (prepare {:.0f}, coarse {:.0f}, "
-               "tiles {:.0f}, refine {:.0f})\n",
-               mebi(b.estimate_bytes), mebi(b.memory_bytes), mebi(b.prepare_bytes),
-               mebi(b.coarse_bytes), mebi(b.tiles_bytes), mebi(b.refine_bytes));
+    fmt::print(
+        "memory    {:.0f} MiB at most, of {:.0f} allowed (prepare {:.0f}, coarse {:.0f}, "
+        "tiles {:.0f}, refine {:.0f})\n",
+        mebi(b.estimate_bytes), mebi(b.memory_bytes), mebi(b.prepare_bytes),
+        mebi(b.coarse_bytes), mebi(b.tiles_bytes), mebi(b.refine_bytes));
     fmt::print("disk      {:.0f} MiB scratch, at most {:.0f} MiB results\n",
                mebi(b.scratch_disk_bytes), mebi(b.output_disk_bytes));
 }
@@ -83,12 +84,12 @@ void print_table(const PlannedJob& planned)
 void log_plan(const PlannedJob& planned)
 {
     const auto range = planned.shape.asked;
-    spdlog::info("{} x {} px, disparities {}..{}, mode {}, cost {}, {} levels; tiles {}; at most "
-                 "{:.0f} MiB",
-                 planned.shape.left.cols, planned.shape.left.rows, range.min, range.max,
-                 name(planned.job.matcher.mode), name(planned.job.matcher.cost),
-                 planned.levels.levels(), tile_text(planned.budget),
-                 mebi(planned.budget.estimate_bytes));
+    spdlog::info(
+        "{} x {} px, disparities {}..{}, mode {}, cost {}, {} levels; tiles {}; at most "
+        "{:.0f} MiB",
+        planned.shape.left.cols, planned.shape.left.rows, range.min, range.max,
+        name(planned.job.matcher.mode), name(planned.job.matcher.cost), planned.levels.levels(),
+        tile_text(planned.budget), mebi(planned.budget.estimate_bytes));
 }
 
 void log_summary(const MatchSummary& summary, const PlannedJob& planned)
@@ -139,8 +140,8 @@ void ProgressLog::operator()(int done, int all)
         return;
     }
     const std::string bar(static_cast<std::size_t>(percent / 4), '#');
-    fmt::print(stderr, "\r[{:<25}] {:3} %  {} of {} tiles, {:.0f} s left   {}", bar, percent, done,
-               all, left_s, done == all ? "\n" : "");
+    fmt::print(stderr, "\r[{:<25}] {:3} %  {} of {} tiles, {:.0f} s left   {}", bar, percent,
+               done, all, left_s, done == all ? "\n" : "");
 }
 
 } // namespace hsgm::pipeline

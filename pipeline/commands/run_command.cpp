@@ -3,7 +3,7 @@
 #include "pipeline/commands/reporting.h"
 
 #include "io/error.h"
-#include "io/text_file.h"
+#include "io/pending_file.h"
 #include "pipeline/configuration.h"
 #include "pipeline/stages/match_stage.h"
 
