@@ -156,6 +156,23 @@ TEST_CASE("a failing rename leaves the earlier output and no temporary file")
     check_harmless(each_output(), {.fail_rename = true});
 }
 
+TEST_CASE("abandoning a large output costs next to nothing")
+{
+    // GDAL fills a file on closing; that must stay far from the 1.6 GB that were announced.
+    const auto compression = GENERATE(as<std::string>{}, "NONE", "DEFLATE");
+    TemporaryFolder folder;
+    const FaultyFilesystem healthy;
+    {
+        RasterOptions options;
+        options.creation_options = {"COMPRESS=" + compression};
+        GeoTiffWriter writer(FaultyFilesystem::over(folder / "huge.tif"), {40000, 40000},
+                             PixelType::uint8, options);
+        writer.write({0, 0, 256, 256}, Image<std::uint8_t>({256, 256}));
+    }
+    CHECK(healthy.counts().bytes < 10000000);
+    CHECK(folder.names().empty());
+}
+
 TEST_CASE("the message names the file, GDAL's words and the full disk")
 {
     TemporaryFolder folder;
