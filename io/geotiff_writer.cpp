@@ -7,8 +7,6 @@
 #include "io/pending_file.h"
 #include "io/stored_blocks.h"
 
-#include <gdal_priv.h>
-
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -96,9 +94,7 @@ struct GeoTiffWriter::State {
 GeoTiffWriter::State::~State()
 {
     if (dataset != nullptr) {
-        // GDAL would first fill an abandoned file to its full size.
-        GDALDataset::FromHandle(dataset.get())->MarkSuppressOnClose();
-        ErrorCollector errors;
+        ErrorCollector errors; // closing what is thrown away may fail in peace
         dataset.reset();
     }
 }

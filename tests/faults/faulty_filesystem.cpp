@@ -50,7 +50,10 @@ std::size_t room_for(std::size_t wanted)
 
 class FaultyHandle final : public VSIVirtualHandle {
 public:
-    FaultyHandle(VSILFILE* inner, bool writable) : inner_(inner), writable_(writable) {}
+    FaultyHandle(VSILFILE* inner, std::string name, bool writable)
+        : inner_(inner), name_(std::move(name)), writable_(writable)
+    {
+    }
     ~FaultyHandle() override
     {
         if (inner_ != nullptr) {
@@ -72,6 +75,7 @@ public:
 
 private:
     VSILFILE* inner_;
+    std::string name_;
     bool writable_;
 };
 
@@ -98,11 +102,23 @@ std::size_t FaultyHandle::Write(const void* buffer, std::size_t size, std::size_
     return written;
 }
 
+/// What a close that fails may mean: the data never left the machine.
+void lose_half(const std::string& name)
+{
+    VSILFILE* file = VSIFOpenL(name.c_str(), "r+b");
+    if (file != nullptr) {
+        VSIFSeekL(file, 0, SEEK_END);
+        VSIFTruncateL(file, VSIFTellL(file) / 2);
+        VSIFCloseL(file);
+    }
+}
+
 int FaultyHandle::Close()
 {
     VSILFILE* closing = std::exchange(inner_, nullptr);
     const int result = closing == nullptr ? 0 : VSIFCloseL(closing);
     if (writable_ && strikes(&FaultCounts::closes, &FaultPlan::fail_close)) {
+        lose_half(name_);
         errno = EIO;
         return -1;
     }
@@ -131,7 +147,7 @@ VSIVirtualHandle* FaultyHandler::Open(const char* name, const char* access, bool
         return nullptr;
     }
     VSILFILE* file = VSIFOpenL(behind(name).c_str(), access);
-    return file == nullptr ? nullptr : new FaultyHandle(file, writable);
+    return file == nullptr ? nullptr : new FaultyHandle(file, behind(name), writable);
 }
 
 int FaultyHandler::Rename(const char* from, const char* to)

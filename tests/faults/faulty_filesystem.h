@@ -11,7 +11,7 @@ struct FaultPlan {
     int fail_read = 0;  // the n-th read gives nothing, from 1
     int fail_write = 0; // the n-th write takes nothing and sets EIO
     int fail_open = 0;  // the n-th opening for writing fails with EACCES
-    int fail_close = 0; // the n-th closing of a written file fails with EIO
+    int fail_close = 0; // the n-th closing of a written file fails with EIO and loses half
     bool fail_rename = false;
     std::int64_t room_bytes = -1; // so many bytes can be written, then ENOSPC
 };
