@@ -69,8 +69,20 @@ std::optional<std::string> library_of(const std::string& header)
     return std::nullopt;
 }
 
-std::string broken_rule_of_quoted(const std::string& module, const std::string& included)
+bool is_private(const std::string& path)
 {
+    return path.ends_with("_private.h");
+}
+
+// A header that others may include, and that is installed.
+bool is_public(const std::string& path)
+{
+    return (path.ends_with(".h") || path.ends_with(".cuh")) && !is_private(path);
+}
+
+std::string broken_rule_of_quoted(const std::string& path, const std::string& included)
+{
+    const std::string module = module_of(path);
     const std::string target = module_of(included);
     if (target.empty()) {
         return "a quoted include names a file of ours by its path from the root";
@@ -78,12 +90,15 @@ std::string broken_rule_of_quoted(const std::string& module, const std::string& 
     if (!may_include(module, target)) {
         return module + " must not include " + target;
     }
+    if (is_private(included) && module != "tests" && (is_public(path) || module != target)) {
+        return "a private header is for the sources of its module";
+    }
     return "";
 }
 
-std::string broken_rule_of_bracketed(const std::string& module, bool in_header,
-                                     const std::string& included)
+std::string broken_rule_of_bracketed(const std::string& path, const std::string& included)
 {
+    const std::string module = module_of(path);
     if (module == "tests") {
         return "";
     }
@@ -103,7 +118,7 @@ std::string broken_rule_of_bracketed(const std::string& module, bool in_header,
     if (module == "matcher") {
         return "matcher knows no " + *library;
     }
-    return in_header ? *library + " stays out of headers" : "";
+    return is_public(path) ? *library + " stays out of public headers" : "";
 }
 
 } // namespace
@@ -111,8 +126,6 @@ std::string broken_rule_of_bracketed(const std::string& module, bool in_header,
 std::vector<std::string> include_violations(const SourceFile& file)
 {
     static const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">])");
-    const std::string module = module_of(file.path);
-    const bool in_header = file.path.ends_with(".h") || file.path.ends_with(".cuh");
     std::vector<std::string> violations;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
         std::smatch match;
@@ -121,8 +134,8 @@ std::vector<std::string> include_violations(const SourceFile& file)
         }
         const std::string included = match[2];
         const std::string broken = match[1] == "\""
-                                       ? broken_rule_of_quoted(module, included)
-                                       : broken_rule_of_bracketed(module, in_header, included);
+                                       ? broken_rule_of_quoted(file.path, included)
+                                       : broken_rule_of_bracketed(file.path, included);
         if (!broken.empty()) {
             violations.push_back(file.path + ":" + std::to_string(i + 1) + ": " + broken +
                                  " (" + included + ")");

@@ -15,7 +15,9 @@ namespace hsgm::structure {
 ///            \   |    /           tests may include everything; nobody includes tests
 ///              tiling             tiling stands on the standard library alone
 ///
-/// GDAL is named only in io; GDAL, PROJ and OpenCV in no header, and none of them in matcher.
+/// GDAL is named only in io; GDAL, PROJ and OpenCV in no public header, and none of them in
+/// matcher. A header called *_private.h is not public: it is not installed, and only sources
+/// and private headers of its own module include it.
 /// Quoted includes name files of ours by their path from the root; what others wrote goes
 /// in angle brackets.
 ///
