@@ -62,8 +62,36 @@ std::uint32_t penalty_of_jump(const LevelPair& pair, int row, int col, int row_b
     return paper_penalty(options.p1, options.p2, std::abs(here - before));
 }
 
+/// C(p, .) with the prior over the window's range, for its core and the halo all round.
+struct WindowCosts {
+    Rect rect;
+    Image<PixelCosts> costs;
+
+    const PixelCosts& at(int row, int col) const
+    {
+        return costs(row - rect.row, col - rect.col);
+    }
+};
+
+WindowCosts window_costs(const LevelPair& pair, const Window& window, bool whole,
+                         const Options& options, const Level* coarser)
+{
+    WindowCosts result;
+    result.rect = tiling::intersect(tiling::expand(window.core, whole ? 0 : options.halo_px),
+                                    tiling::rect_of(pair.left.size()));
+    result.costs = Image<PixelCosts>(result.rect.size());
+    for (int i = 0; i < result.rect.rows; ++i) {
+        for (int j = 0; j < result.rect.cols; ++j) {
+            result.costs(i, j) = matching_costs(pair, result.rect.row + i, result.rect.col + j,
+                                                window.range, options, coarser);
+        }
+    }
+    return result;
+}
+
 /// L of direction number `direction` for the core of one window, put into `result`.
-void solve_direction(Image<PixelCosts>& result, const Window& window, std::size_t direction,
+void solve_direction(Image<PixelCosts>& result, const Window& window,
+                     const WindowCosts& all_matching, std::size_t direction,
                      const LevelPair& pair, const Options& options, bool whole,
                      const Level* coarser)
 {
@@ -82,8 +110,7 @@ void solve_direction(Image<PixelCosts>& result, const Window& window, std::size_
             const int col = step.cols >= 0 ? region.col + j : region.col_end() - 1 - j;
             const int row_before = row - step.rows;
             const int col_before = col - step.cols;
-            const PixelCosts matching =
-                matching_costs(pair, row, col, window.range, options, coarser);
+            const PixelCosts& matching = all_matching.at(row, col);
 
             PixelCosts costs;
             if (region.contains(row_before, col_before)) {
@@ -147,14 +174,15 @@ Level solve_level(LevelPair pair, DisparityRange range, bool whole,
 
     for (std::size_t w = 0; w < level.windows.size(); ++w) {
         const Window& window = level.windows[w];
+        const WindowCosts matching = window_costs(level.pair, window, whole, options, coarser);
         for (std::size_t r = 0; r < level.paths.size(); ++r) {
-            solve_direction(level.paths[r], window, r, level.pair, options, whole, coarser);
+            solve_direction(level.paths[r], window, matching, r, level.pair, options, whole,
+                            coarser);
         }
         for (int row = window.core.row; row < window.core.row_end(); ++row) {
             for (int col = window.core.col; col < window.core.col_end(); ++col) {
                 level.window_at(row, col) = static_cast<int>(w);
-                level.matching(row, col) =
-                    matching_costs(level.pair, row, col, window.range, options, coarser);
+                level.matching(row, col) = matching.at(row, col);
                 PixelCosts sums(window.range);
                 int winner = window.range.min;
                 for (int d = window.range.min; d <= window.range.max; ++d) {
