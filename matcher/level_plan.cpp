@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kLeastLevels = 3;
 constexpr int kMostLevels = 12;
+constexpr int kFurthestDisparity = 16000; // winners are kept in 16 bits
 constexpr int kLeastSide_px = 32;
 constexpr std::int64_t kMostCoarseCells = std::int64_t{1} << 25;
 
@@ -34,6 +35,11 @@ void check(const PairShape& shape)
     if (asked.count() < 1) {
         throw std::invalid_argument("the disparity range " + range +
                                     " is reversed: give the smaller number first");
+    }
+    if (asked.min < -kFurthestDisparity || asked.max > kFurthestDisparity) {
+        throw std::invalid_argument("the disparity range " + range + " must lie within " +
+                                    std::to_string(-kFurthestDisparity) + ".." +
+                                    std::to_string(kFurthestDisparity));
     }
     if (asked.min > shape.left.cols - 1 || asked.max < -(shape.right.cols - 1)) {
         throw std::invalid_argument(

@@ -83,6 +83,8 @@ private:
     PairTraits pair_;
     Options options_;
     LevelPlan plan_;
+    struct Workers;
+    std::shared_ptr<Workers> workers_;
 };
 
 /// The table for cost `hmi`, from the complete images of the level that `hmi_level(shape)`

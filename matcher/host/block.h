@@ -1,0 +1,63 @@
+#pragma once
+
+#include "matcher/host/level_features.h"
+#include "matcher/host/level_result.h"
+#include "matcher/host/matching_cost.h"
+#include "matcher/host/sweep.h"
+
+#include <optional>
+
+namespace hsgm::matcher::host {
+
+/// What all blocks of one level have in common.
+template <typename L>
+struct LevelJob {
+    const Options* options = nullptr; ///< resolved
+    const PairTraits* pair = nullptr;
+    const LevelFeatures* features = nullptr;
+    tiling::DisparityRange range;                              ///< of the level
+    const LevelResult<L>* coarser = nullptr;                   ///< null at the coarsest level
+    const tiling::Patch<std::uint8_t>* coarser_tone = nullptr; ///< for eq. 3
+    bool whole = false;      ///< one block: the image; its work is spread over the threads
+    bool keep_lines = false; ///< a finer level starts its paths here
+    bool keep_prior = false; ///< a finer level reads its prior here
+};
+
+/// Buffers of one worker, reused from block to block.
+template <typename L>
+struct BlockWorkspace {
+    Buffer<std::uint8_t> costs;
+    Buffer<std::uint16_t> sums;
+    Buffer<std::uint32_t> keys;
+    CostWorkspace cost_rows;
+    SweepWorkspace<L> sweep;
+};
+
+/// Sums S of a block's core pixels, borrowed from the workspace they were computed in.
+struct BlockSums {
+    tiling::Rect core;
+    tiling::DisparityRange range;
+    int stride = 0;
+    const std::uint16_t* data = nullptr;
+
+    std::span<const std::uint16_t> at(int row, int col) const
+    {
+        return {data + (std::size_t(row - core.row) * std::size_t(core.cols) +
+                        std::size_t(col - core.col)) *
+                           std::size_t(stride),
+                static_cast<std::size_t>(range.count())};
+    }
+};
+
+/// Costs, paths and sums of one block. `lines` receives the path costs that the finer level
+/// starts from (job.keep_lines).
+template <typename L>
+BlockSums solve_block(const LevelJob<L>& job, const tiling::Rect& core,
+                      tiling::DisparityRange range, std::vector<LineStore<L>>& lines,
+                      BlockWorkspace<L>& workspace);
+
+/// Winners and prior of a solved block, as the finer level reads them.
+template <typename L>
+void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result);
+
+} // namespace hsgm::matcher::host

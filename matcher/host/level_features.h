@@ -1,0 +1,27 @@
+#pragma once
+
+#include "matcher/matcher.h"
+
+#include <cstdint>
+
+namespace hsgm::matcher::host {
+
+/// What matching reads of one level's images, computed once for all windows of a tile.
+struct LevelFeatures {
+    tiling::Size left_size; ///< of the whole level
+    tiling::Size right_size;
+    const LevelImages* images = nullptr;
+    tiling::Patch<std::uint8_t> left_tone;
+    tiling::Patch<std::uint8_t> right_tone; ///< cost `hmi` only
+    tiling::Patch<std::uint8_t> low_texture;
+    tiling::Patch<std::uint64_t> left_census; ///< census costs only
+    tiling::Patch<std::uint64_t> right_census;
+};
+
+/// The features of level `level` for matching the pixels of `aggregation`.
+/// `images` must hold the image rectangles of that level's support and outlive the result.
+LevelFeatures level_features(const LevelImages& images, const LevelPlan& plan, int level,
+                             const tiling::Rect& aggregation, const PairTraits& pair,
+                             const Options& options);
+
+} // namespace hsgm::matcher::host

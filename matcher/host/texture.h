@@ -1,0 +1,20 @@
+#pragma once
+
+#include "matcher/pixel.h"
+#include "tiling/image.h"
+
+#include <cstdint>
+
+namespace hsgm::matcher::host {
+
+/// The 8-bit copy of an image part.
+tiling::Patch<std::uint8_t> tones(const tiling::Patch<std::uint16_t>& image, Tone tone);
+
+/// 1 where the valid tones of the 7 x 7 neighbourhood (clipped to the level) span less than
+/// kTextureGate and the pixel itself is valid, else 0, for the pixels of `area`.
+/// `image` and `tone` must hold `area` grown by 3 px and clipped to the level's image.
+tiling::Patch<std::uint8_t> low_texture(const tiling::Patch<std::uint16_t>& image,
+                                        const tiling::Patch<std::uint8_t>& tone,
+                                        const tiling::Rect& area);
+
+} // namespace hsgm::matcher::host

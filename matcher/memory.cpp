@@ -1,0 +1,114 @@
+#include "matcher/matcher.h"
+
+#include "matcher/kernel.h"
+
+#include <algorithm>
+
+namespace hsgm::matcher {
+
+namespace {
+
+using tiling::LevelSupport;
+using tiling::Rect;
+
+constexpr std::int64_t kImageBytes = 2 + 1 + 1 + 8; // pixels, tone, texture gate, census
+constexpr std::int64_t kRightBytes = 2 + 1 + 8;     // pixels, tone, census
+constexpr std::int64_t kFirstPassBytes = 4 + 1 + 2; // disparity, confidence, reasons
+constexpr std::int64_t kPaddedCopyBytes = 2;        // the census works on a padded copy
+constexpr std::int64_t kKeyBytes = 4;
+
+std::int64_t path_bytes(const Options& options)
+{
+    const int prior = options.prior ? kPriorMax : 0;
+    return traits(options.cost).max + prior + options.p2 <= 255 ? 1 : 2;
+}
+
+// What a level keeps for the next finer one: winners, prior and start lines.
+std::int64_t kept_bytes(const Rect& windows, int count, const Options& options)
+{
+    const std::int64_t cells = windows.area() * padded_count(count);
+    const std::int64_t prior = options.prior ? cells : 0;
+    // Two lines of a pitch of window / 2 for diagonals, one for the others; two pitches more
+    // for windows cut by the edge.
+    const std::int64_t lines =
+        cells * options.paths * path_bytes(options) * 4 / std::max(options.window_px, 1);
+    return 2 * windows.area() + prior + lines;
+}
+
+std::int64_t feature_bytes(const LevelSupport& s)
+{
+    const std::int64_t left = s.left_image.area();
+    const std::int64_t right = s.right_image.area();
+    return left * kImageBytes + right * kRightBytes + std::max(left, right) * kPaddedCopyBytes;
+}
+
+std::int64_t worker_bytes(const Options& options, int count)
+{
+    const std::int64_t stride = padded_count(count);
+    const std::int64_t side = options.window_px + 2 * options.halo_px;
+    const std::int64_t rows = options.paths == 16 ? 3 : 2;
+    return side * side * stride +                                             // costs
+           2 * std::int64_t{options.window_px} * options.window_px * stride + // sums
+           rows * side * (stride + 16) * path_bytes(options) + (1 << 16);
+}
+
+} // namespace
+
+std::int64_t Matcher::coarse_bytes() const
+{
+    if (!plan_.coarsest_whole) {
+        return 0;
+    }
+    const tiling::Size size = plan_.left_sizes.back();
+    const int count = plan_.ranges.back().count();
+    const std::int64_t cells = size.area() * padded_count(count);
+    const std::int64_t rows = options_.paths == 16 ? 3 : 2;
+    const std::int64_t path_rows =
+        rows * size.cols * std::int64_t{padded_count(count) + 16} * path_bytes(options_);
+    const LevelSupport whole{rect_of(size), rect_of(size), rect_of(size),
+                             rect_of(plan_.right_sizes.back())};
+    const std::int64_t outputs =
+        plan_.levels() == 1
+            ? size.area() * kFirstPassBytes + plan_.right_sizes.back().area() * kKeyBytes
+            : kept_bytes(rect_of(size), count, options_);
+    return cells * (1 + 2) + path_rows + feature_bytes(whole) + outputs;
+}
+
+std::int64_t Matcher::tile_bytes(int tile_size_px, int threads) const
+{
+    const tiling::Size full = plan_.left_sizes.front();
+    const int rows = tile_size_px == 0 ? full.rows : std::min(tile_size_px, full.rows);
+    const int cols = tile_size_px == 0 ? full.cols : std::min(tile_size_px, full.cols);
+    // A tile in the middle of the image that starts just before a window's border has the
+    // largest support.
+    const int window = options_.window_px;
+    const auto off_grid = [window](int whole, int part) {
+        return part == whole
+                   ? 0
+                   : std::min((whole - part) / 2 / window * window + window - 1, whole - part);
+    };
+    const Rect core{off_grid(full.rows, rows), off_grid(full.cols, cols), rows, cols};
+    const auto levels = support(core);
+    std::int64_t images = 0;
+    std::int64_t most = 0;
+    std::int64_t coarser_kept = 0;
+    for (int level = plan_.windowed_levels() - 1; level >= 0; --level) {
+        const auto k = static_cast<std::size_t>(level);
+        const LevelSupport& s = levels[k];
+        images += 2 * (s.left_image.area() + s.right_image.area());
+        const std::int64_t kept =
+            level > 0 ? kept_bytes(s.windows, plan_.ranges[k].count(), options_) : 0;
+        most = std::max(most, feature_bytes(s) + kept + coarser_kept);
+        coarser_kept = kept;
+    }
+    const Rect seen =
+        intersect(right_reach(core, plan_.ranges.front()), rect_of(plan_.right_sizes.front()));
+    const std::int64_t outputs = core.area() * kFirstPassBytes + seen.area() * kKeyBytes;
+    const std::int64_t workers =
+        plan_.windowed_levels() == 0
+            ? 0
+            : threads * worker_bytes(options_, plan_.ranges.front().count());
+    return images + most + outputs + workers;
+}
+
+} // namespace hsgm::matcher
