@@ -4,7 +4,9 @@
 #include "matcher/refine.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
+#include <utility>
 
 namespace hsgm::reference {
 
@@ -88,9 +90,9 @@ std::vector<Image<std::uint16_t>> matcher_pyramid(Random& random,
         const Image<std::uint16_t>& fine = result.back();
         Image<std::uint16_t> coarse(tiling::halve(fine.size()));
         for (const Rect& piece : random_partition(random, coarse.size(), 2, 2)) {
-            const Rect taps = tiling::rect_between(2 * piece.row - 1, 2 * piece.col - 1,
-                                                   2 * piece.row_end() + 1,
-                                                   2 * piece.col_end() + 1);
+            const Rect taps =
+                tiling::rect_between(2 * piece.row - 1, 2 * piece.col - 1,
+                                     2 * piece.row_end() + 1, 2 * piece.col_end() + 1);
             const auto patch = cut(fine, tiling::intersect(taps, rect_of(fine.size())));
             matcher::reduce(patch, fine.size(), piece, coarse.view().part(piece));
         }
@@ -120,8 +122,8 @@ Outcome run_matcher(const Case& c)
         std::vector<matcher::LevelImages> images;
         for (int k = 0; k < matcher.plan().windowed_levels(); ++k) {
             const auto i = static_cast<std::size_t>(k);
-            images.push_back({cut(lefts[i], support[i].left_image),
-                              cut(rights[i], support[i].right_image)});
+            images.push_back(
+                {cut(lefts[i], support[i].left_image), cut(rights[i], support[i].right_image)});
         }
         const matcher::TileMatch tile = matcher.match_tile(core, images, *coarse);
         paste(outcome.disparity_q8, core, tile.disparity_q8);
@@ -185,8 +187,8 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     Case c;
     c.seed = seed;
     Options& o = c.options;
-    o.mode = random.one_of({Mode::hsgm, Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::sgm,
-                            Mode::local});
+    o.mode = random.one_of(
+        {Mode::hsgm, Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local});
     o.cost = random.one_of(
         {Cost::census5x5, Cost::census7x7, Cost::census7x7, Cost::census9x7, Cost::hmi});
     o.paths = random.one_of({4, 5, 8, 8, 16});
@@ -201,11 +203,12 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     o.median = random.one_of({1, 3, 3, 5});
     theme.vary(random, o);
 
-    const Size left{random.between(1, theme.most_side_px), random.between(1, theme.most_side_px)};
-    const int right_cols = random.chance(50) ? left.cols : random.between(1, theme.most_side_px);
-    const auto most_count = static_cast<int>(
-        std::clamp<std::int64_t>(theme.most_work / (left.area() * o.paths), theme.least_count,
-                                 theme.most_count));
+    const Size left{random.between(1, theme.most_side_px),
+                    random.between(1, theme.most_side_px)};
+    const int right_cols =
+        random.chance(50) ? left.cols : random.between(1, theme.most_side_px);
+    const auto most_count = static_cast<int>(std::clamp<std::int64_t>(
+        theme.most_work / (left.area() * o.paths), theme.least_count, theme.most_count));
     const int count = random.between(theme.least_count, most_count);
     // Some left pixel has a counterpart for some disparity of the range.
     const int first = -(right_cols - 1) - (count - 1);
@@ -286,8 +289,8 @@ std::shared_ptr<const matcher::HmiTable> table_of(const HmiCosts& costs)
 
 std::string difference(const Case& c)
 {
-    const MatchResult twin = match(c.pair.left, c.pair.right, c.asked, c.tone_left,
-                                   c.tone_right, c.options, &c.hmi);
+    const MatchResult twin =
+        match(c.pair.left, c.pair.right, c.asked, c.tone_left, c.tone_right, c.options, &c.hmi);
     const RefineResult refined = refine(twin, c.asked, c.options);
     const Outcome outcome = run_matcher(c);
     for (const std::string& text :

@@ -20,7 +20,7 @@ struct Case {
     ToneEnds tone_left;
     ToneEnds tone_right;
     Options options;
-    HmiCosts hmi;           ///< for cost `hmi` only
+    HmiCosts hmi;            ///< for cost `hmi` only
     std::vector<Rect> tiles; ///< partition the left image, as do the pieces
     std::vector<Rect> pieces;
 

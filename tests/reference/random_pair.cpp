@@ -50,8 +50,8 @@ Image<std::uint16_t> texture(Random& random, Size size, int most)
     }
     for (int row = 0; row < size.rows; ++row) {
         for (int col = 0; col < size.cols; ++col) {
-            image(row, col) = static_cast<std::uint16_t>(
-                blotches(row / blotch, col / blotch) + random.between(0, most / 2));
+            image(row, col) = static_cast<std::uint16_t>(blotches(row / blotch, col / blotch) +
+                                                         random.between(0, most / 2));
         }
     }
     return image;
