@@ -14,6 +14,8 @@ namespace {
 constexpr int kTones = 256;
 constexpr int kCostMax = 48;
 constexpr int kRounds = 3;
+constexpr double kMatchedShare = 0.9;
+constexpr double kChanceShare = 0.3;
 
 // 7 taps of a Gaussian with sigma 1, normalised.
 std::array<double, 7> gaussian()
@@ -93,6 +95,44 @@ std::vector<double> mutual_information(const JointHistogram& joint, double total
     return plane;
 }
 
+// The information that most true matches reach, and the one that chance meetings reach.
+struct Quantiles {
+    double high;
+    double low;
+    std::vector<double> information;
+};
+
+Quantiles quantiles(const JointHistogram& joint, double total, std::vector<double> information)
+{
+    std::vector<double> left(std::size_t{kTones});
+    std::vector<double> right(std::size_t{kTones});
+    for (std::size_t i = 0; i < joint.size(); ++i) {
+        left[i / kTones] += static_cast<double>(joint[i]);
+        right[i % kTones] += static_cast<double>(joint[i]);
+    }
+    std::vector<std::size_t> order(joint.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return information[a] < information[b];
+    });
+    const auto reaching = [&](double share, auto weight) {
+        double sum = 0;
+        for (const std::size_t i : order) {
+            sum += weight(i);
+            if (sum >= share) {
+                return information[i];
+            }
+        }
+        return information[order.back()];
+    };
+    const double high = reaching(
+        kMatchedShare, [&](std::size_t i) { return static_cast<double>(joint[i]) / total; });
+    const double low = reaching(kChanceShare, [&](std::size_t i) {
+        return left[i / kTones] * right[i % kTones] / (total * total);
+    });
+    return {high, low, std::move(information)};
+}
+
 JointHistogram matched_tones(const TileMatch& match, const PairTraits& pair,
                              tiling::ImageView<const std::uint16_t> left,
                              tiling::ImageView<const std::uint16_t> right)
@@ -130,16 +170,14 @@ std::shared_ptr<const HmiTable> make_hmi_table(const JointHistogram& joint)
     if (total == 0) {
         return table;
     }
-    const auto information = mutual_information(joint, static_cast<double>(total));
-    const auto [least, most] = std::minmax_element(information.begin(), information.end());
-    if (*most > *least) {
-        const double low = *least;
-        const double high = *most;
-        std::transform(information.begin(), information.end(), table->cost.begin(),
-                       [low, high](double mi) {
-                           return static_cast<std::uint8_t>(
-                               std::floor(kCostMax * (high - mi) / (high - low) + 0.5));
-                       });
+    const Quantiles q = quantiles(joint, static_cast<double>(total),
+                                  mutual_information(joint, static_cast<double>(total)));
+    if (q.high > q.low) {
+        std::transform(
+            q.information.begin(), q.information.end(), table->cost.begin(), [&q](double mi) {
+                const double badness = std::clamp((q.high - mi) / (q.high - q.low), 0.0, 1.0);
+                return static_cast<std::uint8_t>(std::floor(kCostMax * badness + 0.5));
+            });
     }
     return table;
 }

@@ -15,11 +15,11 @@
 namespace hsgm::matcher {
 
 /// Largest addition of the gated prior to a matching cost.
-constexpr int kPriorMax = 2;
+constexpr int kPriorMax = 4;
 /// The coarser level's normalised sums are capped at this before they become the prior.
-constexpr int kPriorCap = 10;
+constexpr int kPriorCap = 16;
 /// A 7 x 7 neighbourhood whose tones span less than this counts as low texture.
-constexpr int kTextureGate = 10;
+constexpr int kTextureGate = 6;
 /// How much dearer than P2 a coarse disparity is that was never searched.
 constexpr int kUnsearchedMargin = 24;
 /// Right-view key of a right pixel that no left pixel met.
@@ -28,7 +28,7 @@ constexpr std::uint32_t kNoKey = 0xFFFFFFFFU;
 /// P2 by the tone difference `a` along the path, gradient rule: p2 at 0, falling to p1.
 HSGM_HOST_DEVICE constexpr int p2_gradient(int p1, int p2, int a)
 {
-    return p1 + (p2 - p1) * 8 / (8 + a);
+    return p1 + (p2 - p1) * 5 / (5 + a);
 }
 
 /// P2 by eq. 3 of Won and Jung.

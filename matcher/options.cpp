@@ -117,7 +117,7 @@ CostTraits traits(Cost cost)
     case Cost::census7x7:
         return {48, 3, 3};
     case Cost::census9x7:
-        return {60, 3, 4};
+        return {59, 3, 4};
     case Cost::hmi:
         return {48, 0, 0};
     }

@@ -114,7 +114,7 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
         census_rows([](int bits) { return 2 * bits; });
         break;
     case Cost::census9x7:
-        census_rows([](int bits) { return std::min(bits, 60); });
+        census_rows([](int bits) { return std::min(bits, 59); });
         break;
     default:
         census_rows([](int bits) { return bits; });

@@ -19,7 +19,7 @@ CostRule rule(Cost cost)
     case Cost::census7x7:
         return {7, 7, 48};
     case Cost::census9x7: // 7 rows, 9 columns
-        return {7, 9, 60};
+        return {7, 9, 59};
     case Cost::hmi:
         return {1, 1, 48};
     }
@@ -89,7 +89,7 @@ std::uint32_t matching_cost(const LevelPair& pair, int row, int x, int d)
     case Cost::census5x5:
         return 2 * hamming;
     case Cost::census9x7:
-        return std::min(hamming, 60u);
+        return std::min(hamming, 59u);
     default:
         return hamming;
     }
@@ -111,7 +111,7 @@ bool is_flat(const LevelPair& pair, int row, int col)
             }
         }
     }
-    return largest - least < 10;
+    return largest - least < 6;
 }
 
 PixelCosts prior_of(const PixelCosts& coarse_sums, int paths)
@@ -120,14 +120,14 @@ PixelCosts prior_of(const PixelCosts& coarse_sums, int paths)
     const std::uint32_t least = coarse_sums.least();
     for (int d = q.range.min; d <= q.range.max; ++d) {
         const std::uint32_t above = coarse_sums.at(d) - least;
-        q.at(d) = std::min(above / static_cast<std::uint32_t>(paths), 10u);
+        q.at(d) = std::min(above / static_cast<std::uint32_t>(paths), 16u);
     }
     return q;
 }
 
 std::uint32_t prior_at(const PixelCosts& q, int d)
 {
-    const auto q_at = [&](int D) { return q.range.contains(D) ? q.at(D) : 10u; };
+    const auto q_at = [&](int D) { return q.range.contains(D) ? q.at(D) : 16u; };
     const int half = tiling::floor_div(d, 2);
     return d % 2 == 0 ? q_at(half) : (q_at(half) + q_at(half + 1) + 1) >> 1;
 }

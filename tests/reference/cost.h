@@ -58,7 +58,7 @@ LevelPair make_level_pair(const Image<std::uint16_t>& left, const Image<std::uin
 /// Section 3: C(p, d) of p = (row, x), without the prior.
 std::uint32_t matching_cost(const LevelPair& pair, int row, int x, int d);
 
-/// range7(p) < 10: the tones of the valid pixels of the 7 x 7 neighbourhood hardly differ.
+/// range7(p) < 6: the tones of the valid pixels of the 7 x 7 neighbourhood hardly differ.
 /// False for a nodata pixel.
 bool is_flat(const LevelPair& pair, int row, int col);
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace hsgm::reference {
 
@@ -52,6 +54,29 @@ Image<double> smoothed(const Image<double>& plane)
     return result;
 }
 
+namespace {
+
+/// Goes through all pairs of tones by rising mi and adds up their shares; the mi where the
+/// sum first reaches `goal`.
+double mi_where_sum_reaches(double goal, const Image<double>& shares, const Image<double>& mi)
+{
+    std::vector<std::pair<double, std::size_t>> order; // mi, 256 i + k
+    for (std::size_t index = 0; index < 65536; ++index) {
+        order.emplace_back(mi.pixels()[index], index);
+    }
+    std::sort(order.begin(), order.end());
+    double sum = 0;
+    for (const auto& [value, index] : order) {
+        sum += shares.pixels()[index];
+        if (sum >= goal) {
+            return value;
+        }
+    }
+    throw std::logic_error("the shares do not add up to one");
+}
+
+} // namespace
+
 HmiCosts hmi_table(const JointCounts& joint)
 {
     const Size size{256, 256};
@@ -99,15 +124,37 @@ HmiCosts hmi_table(const JointCounts& joint)
                 h1[static_cast<std::size_t>(i)] + h2[static_cast<std::size_t>(k)] - h(i, k);
         }
     }
-    const auto [least, largest] = std::minmax_element(mi.pixels().begin(), mi.pixels().end());
-    if (*largest == *least) {
+    // How often two tones meet: in the matches, and by chance.
+    std::vector<double> H1(256, 0.0);
+    std::vector<double> H2(256, 0.0);
+    for (std::size_t i = 0; i < 256; ++i) {
+        for (std::size_t k = 0; k < 256; ++k) {
+            const auto count =
+                static_cast<double>(joint(static_cast<int>(i), static_cast<int>(k)));
+            H1[i] += count;
+            H2[k] += count;
+        }
+    }
+    const auto all = static_cast<double>(total);
+    Image<double> matched(size);
+    Image<double> chance(size);
+    for (int i = 0; i < 256; ++i) {
+        for (int k = 0; k < 256; ++k) {
+            matched(i, k) = static_cast<double>(joint(i, k)) / all;
+            chance(i, k) =
+                H1[static_cast<std::size_t>(i)] * H2[static_cast<std::size_t>(k)] / (all * all);
+        }
+    }
+    const double high = mi_where_sum_reaches(0.9, matched, mi);
+    const double low = mi_where_sum_reaches(0.3, chance, mi);
+    if (high <= low) {
         return HmiCosts(size, 24);
     }
     HmiCosts table(size);
     for (int i = 0; i < 256; ++i) {
         for (int k = 0; k < 256; ++k) {
-            table(i, k) = static_cast<std::uint8_t>(
-                std::floor(48 * (*largest - mi(i, k)) / (*largest - *least) + 0.5));
+            const double share = std::clamp((high - mi(i, k)) / (high - low), 0.0, 1.0);
+            table(i, k) = static_cast<std::uint8_t>(std::floor(48 * share + 0.5));
         }
     }
     return table;

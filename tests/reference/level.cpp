@@ -9,7 +9,7 @@ namespace hsgm::reference {
 
 bool has_eight_bits(const Options& options)
 {
-    return static_cast<int>(rule(options.cost).max) + (options.prior ? 2 : 0) + options.p2 <=
+    return static_cast<int>(rule(options.cost).max) + (options.prior ? 4 : 0) + options.p2 <=
            255;
 }
 
@@ -39,7 +39,7 @@ PixelCosts matching_costs(const LevelPair& pair, int row, int col, DisparityRang
         ensure(costs.at(d) <= rule(pair.cost).max, "a matching cost is at most C_max");
         if (with_prior) {
             const std::uint32_t added = prior_at(coarser->priors(row / 2, col / 2), d) >> 2;
-            ensure(added <= 2, "the prior adds at most 2");
+            ensure(added <= 4, "the prior adds at most 4");
             costs.at(d) += added;
         }
     }

@@ -46,7 +46,7 @@ TEST_CASE("the twin's confidence compares with the best cost two or more away")
 }
 
 /// Left tones 1 2 3 4 and right tones 11..16 with disparities -2..0, costs by table:
-/// 3 0 4 | 1 6 0 | 0 0 9 | 7 7 7. Every tone step is 1, so P2' = 2 + 9*8/9 = 10.
+/// 3 0 4 | 1 6 0 | 0 0 9 | 7 7 7. Every tone step is 1, so P2' = 2 + 9*5/6 = 9.
 struct Line {
     HmiCosts table = HmiCosts({256, 256}, 0);
     Image<std::uint16_t> left = pixels({{1, 2, 3, 4}});

@@ -1,0 +1,89 @@
+#include "io/hillshade.h"
+
+#include "io/creation_options.h"
+#include "io/error.h"
+#include "io/gdal_private.h"
+#include "io/pending_file.h"
+#include "io/raster_channels.h"
+#include "io/stored_blocks.h"
+
+#include <gdal_utils.h>
+
+#include <cmath>
+#include <memory>
+
+namespace hsgm::io {
+
+namespace {
+
+void check(const char* name, double value, bool allowed, const char* range)
+{
+    if (!std::isfinite(value) || !allowed) {
+        throw ConfigError(std::string("The hillshade's ") + name + " is " +
+                          std::to_string(value) + "; it must be " + range + ".");
+    }
+}
+
+struct OptionsFree {
+    void operator()(GDALDEMProcessingOptions* options) const
+    {
+        GDALDEMProcessingOptionsFree(options);
+    }
+};
+using DemOptions = std::unique_ptr<GDALDEMProcessingOptions, OptionsFree>;
+
+DemOptions gdal_options(const HillshadeOptions& options, const CPLStringList& creation)
+{
+    CPLStringList list;
+    const auto add = [&](const char* flag, double value) {
+        list.AddString(flag);
+        list.AddString(CPLSPrintf("%.17g", value));
+    };
+    add("-az", options.azimuth_deg);
+    add("-alt", options.altitude_deg);
+    add("-z", options.z_factor);
+    add("-s", options.scale);
+    list.AddString("-compute_edges"); // else the outermost pixels would stay empty
+    list.AddString("-of");
+    list.AddString("GTiff");
+    for (int i = 0; i < creation.Count(); ++i) {
+        list.AddString("-co");
+        list.AddString(creation[i]);
+    }
+    return DemOptions(GDALDEMProcessingOptionsNew(list.List(), nullptr));
+}
+
+} // namespace
+
+void HillshadeOptions::validate() const
+{
+    check("azimuth_deg", azimuth_deg, azimuth_deg >= 0 && azimuth_deg <= 360, "0 to 360");
+    check("altitude_deg", altitude_deg, altitude_deg >= 0 && altitude_deg <= 90, "0 to 90");
+    check("z_factor", z_factor, z_factor > 0, "above 0");
+    check("scale", scale, scale > 0, "above 0");
+}
+
+void write_hillshade(const std::string& height_path, const std::string& output_path,
+                     const HillshadeOptions& options)
+{
+    options.validate();
+    const Dataset height = open_raster(height_path);
+    const CPLStringList creation =
+        geotiff_options(output_path, PixelType::uint8, options.creation_options);
+    PendingFile file(output_path);
+    ErrorCollector errors;
+    const DemOptions dem_options = gdal_options(options, creation);
+    Dataset shaded(GDALDEMProcessing(file.temporary_path().c_str(), height.get(), "hillshade",
+                                     nullptr, dem_options.get(), nullptr));
+    const bool made = shaded != nullptr;
+    shaded.reset();
+    if (!made || errors.failed()) {
+        throw StorageError("Cannot shade " + height_path + " into " + output_path + "; " +
+                           errors.quote() + ".");
+    }
+    check_stored_blocks(file, size_of(height.get()), PixelType::uint8,
+                        creation.FetchBool("SPARSE_OK", false));
+    file.publish();
+}
+
+} // namespace hsgm::io

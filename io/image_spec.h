@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace hsgm::io {
+
+/// Which pixels to read, as a configuration states it.
+struct ImageSpec {
+    /// Any path that GDAL opens, `/vsizip/`, `/vsicurl/` and the like included.
+    std::string path;
+    /// Counted from 1. 0 chooses: luminance where the first three bands are red, green and
+    /// blue in 8 or 16 bits, else band 1.
+    int band = 0;
+    /// The value that means "no value"; replaces the one that the file declares. NaN here
+    /// switches the declared one off.
+    std::optional<double> nodata = std::nullopt;
+    /// A raster file of the same size whose zeros mark pixels without a value; may be empty.
+    std::string mask = "";
+};
+
+} // namespace hsgm::io
