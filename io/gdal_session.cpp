@@ -160,4 +160,9 @@ Dataset open_raster(const std::string& path)
     return dataset;
 }
 
+const char* gdal_version()
+{
+    return GDALVersionInfo("RELEASE_NAME");
+}
+
 } // namespace hsgm::io

@@ -12,4 +12,7 @@ void initialise_gdal(std::size_t cache_bytes);
 /// Registers the drivers and nothing else; cheap to repeat, safe from every thread.
 void register_gdal();
 
+/// Of the library in use, for example "3.6.2".
+const char* gdal_version();
+
 } // namespace hsgm::io

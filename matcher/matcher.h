@@ -93,6 +93,9 @@ std::shared_ptr<const HmiTable> solve_hmi_table(const PairTraits& pair, const Op
                                                 tiling::ImageView<const std::uint16_t> left,
                                                 tiling::ImageView<const std::uint16_t> right);
 
+/// Name of the vector instructions that the matcher uses on this processor.
+const char* vector_instructions();
+
 /// The level whose images `solve_hmi_table` wants: the coarsest of mode `hsgm`, levels auto.
 int hmi_level(const PairShape& shape);
 

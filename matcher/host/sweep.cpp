@@ -1,5 +1,7 @@
 #include "matcher/host/sweep.h"
 
+#include "matcher/matcher.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -362,4 +364,13 @@ void sweep(const SweepJob<std::uint16_t>& job, SweepWorkspace<std::uint16_t>& wo
 }
 
 } // namespace hsgm::matcher::host
+
+namespace hsgm::matcher {
+
+const char* vector_instructions()
+{
+    return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets());
+}
+
+} // namespace hsgm::matcher
 #endif

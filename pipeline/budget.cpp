@@ -1,0 +1,135 @@
+#include "pipeline/budget.h"
+
+#include "pipeline/error.h"
+#include "pipeline/stages/first_pass.h"
+#include "pipeline/stages/prepare_stage.h"
+#include "pipeline/stages/refine_stage.h"
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+/// The program, its libraries, and what the allocator holds back.
+constexpr std::int64_t kBaseBytes = 96 * kMiB;
+/// Two sources: a strip of doubles and of pixels each, and GDAL's decoded blocks.
+constexpr std::int64_t kStripBytes = 2 * (16 + 4 + 8) * kMiB;
+/// Larger tiles repeat less work at their borders, but gain little beyond this.
+constexpr std::array<int, 8> kTileSizes{1024, 768, 512, 384, 256, 192, 128, 64};
+
+std::optional<std::uint64_t> read_number(const char* path)
+{
+    std::ifstream file(path);
+    std::uint64_t value = 0;
+    if (file >> value) {
+        return value;
+    }
+    return std::nullopt;
+}
+
+std::int64_t kept_coarse_bytes(const matcher::Matcher& matcher)
+{
+    // Part of the peak while it is solved; a safe bound for what stays.
+    return matcher.coarse_bytes() / (matcher.plan().levels() == 1 ? 1 : 2);
+}
+
+std::int64_t stage_bytes(const matcher::Matcher& matcher, int tile, int threads, int in_flight,
+                         std::int64_t workers_share)
+{
+    const std::int64_t one = matcher.tile_bytes(tile, 0);
+    return kBaseBytes + kept_coarse_bytes(matcher) + in_flight * one + threads * workers_share;
+}
+
+// Fills in what a tile size takes.
+void set_tiles(Budget& budget, const matcher::Matcher& matcher, int tile)
+{
+    budget.tile_size_px = tile;
+    budget.tiles = tiling::TilePlan(matcher.pair().shape.left, tile).count();
+    budget.workers = std::min(budget.tiles, std::min(budget.threads, 2));
+    budget.tiles_in_flight = std::min(budget.tiles, budget.workers + 1);
+    const std::int64_t worker = matcher.tile_bytes(tile, 1) - matcher.tile_bytes(tile, 0);
+    budget.tiles_bytes =
+        stage_bytes(matcher, tile, budget.threads, budget.tiles_in_flight, worker);
+    budget.estimate_bytes = std::max(
+        {budget.prepare_bytes, budget.coarse_bytes, budget.tiles_bytes, budget.refine_bytes});
+}
+
+std::string mebibytes(std::int64_t bytes)
+{
+    return fmt::format("{} MiB", (bytes + kMiB - 1) / kMiB);
+}
+
+std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
+{
+    const int floats = 1 + !job.outputs.height.empty() + !job.outputs.depth.empty();
+    return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty());
+}
+
+} // namespace
+
+std::uint64_t available_memory_bytes()
+{
+    std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                          static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    for (const char* limit :
+         {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+        if (const auto value = read_number(limit)) {
+            bytes = std::min(bytes, *value);
+        }
+    }
+    return bytes;
+}
+
+std::size_t gdal_cache_bytes()
+{
+    return 16 << 20;
+}
+
+Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_levels)
+{
+    const auto& shape = matcher.pair().shape;
+    Budget budget;
+    budget.threads = job.run.threads > 0 ? job.run.threads : tbb::info::default_concurrency();
+    budget.memory_bytes = static_cast<std::int64_t>(
+        job.run.memory_bytes.value_or(available_memory_bytes() / 5 * 4));
+    budget.prepare_bytes =
+        kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
+    budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
+    budget.refine_bytes = kBaseBytes + refine_bytes(shape);
+    budget.scratch_disk_bytes =
+        PreparedPair::disk_bytes(shape, pyramid_levels) + FirstPass::disk_bytes(shape);
+    budget.output_disk_bytes = output_bytes(job, shape);
+    if (job.run.tile_size_px) {
+        set_tiles(budget, matcher, *job.run.tile_size_px);
+        if (budget.estimate_bytes <= budget.memory_bytes) {
+            return budget;
+        }
+    } else {
+        for (const int tile : kTileSizes) {
+            set_tiles(budget, matcher, tile);
+            if (budget.estimate_bytes <= budget.memory_bytes) {
+                return budget;
+            }
+        }
+    }
+    const auto mode = matcher.options().mode;
+    throw BudgetError(fmt::format(
+        "mode {} with tiles of {} px and {} threads needs {} of memory, but may take {}: "
+        "allow more with --memory{}{}",
+        name(mode), budget.tile_size_px, budget.threads, mebibytes(budget.estimate_bytes),
+        mebibytes(budget.memory_bytes),
+        job.run.tile_size_px ? ", choose smaller tiles" : ", use fewer threads",
+        mode == matcher::Mode::sgm ? ", or use mode hsgm, which is not solved in one piece"
+                                   : ""));
+}
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,147 @@
+#include "pipeline/commands/reporting.h"
+
+#include "matcher/reasons.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <string>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+double mebi(std::int64_t bytes)
+{
+    return static_cast<double>(bytes) / (1 << 20);
+}
+
+nlohmann::ordered_json levels_json(const matcher::LevelPlan& levels)
+{
+    auto list = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < levels.ranges.size(); ++k) {
+        list.push_back({{"level", k},
+                        {"rows", levels.left_sizes[k].rows},
+                        {"cols", levels.left_sizes[k].cols},
+                        {"disparity_min", levels.ranges[k].min},
+                        {"disparity_max", levels.ranges[k].max}});
+    }
+    return list;
+}
+
+nlohmann::ordered_json plan_json(const PlannedJob& planned)
+{
+    const Budget& b = planned.budget;
+    nlohmann::ordered_json json;
+    json["mode"] = name(planned.job.matcher.mode);
+    json["cost"] = name(planned.job.matcher.cost);
+    json["levels"] = levels_json(planned.levels);
+    json["tile_size_px"] = b.tile_size_px;
+    json["tiles"] = b.tiles;
+    json["tiles_in_flight"] = b.tiles_in_flight;
+    json["threads"] = b.threads;
+    json["memory_bytes"] = {{"allowed", b.memory_bytes},  {"estimate", b.estimate_bytes},
+                            {"prepare", b.prepare_bytes}, {"coarse", b.coarse_bytes},
+                            {"tiles", b.tiles_bytes},     {"refine", b.refine_bytes}};
+    json["disk_bytes"] = {{"scratch", b.scratch_disk_bytes}, {"outputs", b.output_disk_bytes}};
+    return json;
+}
+
+std::string tile_text(const Budget& budget)
+{
+    if (budget.tile_size_px == 0) {
+        return "untiled";
+    }
+    return fmt::format("{} of {} px, {} in flight", budget.tiles, budget.tile_size_px,
+                       budget.tiles_in_flight);
+}
+
+void print_table(const PlannedJob& planned)
+{
+    const Budget& b = planned.budget;
+    fmt::print("mode      {}, {}\n", name(planned.job.matcher.mode),
+               name(planned.job.matcher.cost));
+    for (std::size_t k = 0; k < planned.levels.ranges.size(); ++k) {
+        fmt::print("level {:<3} {} x {} px, disparities {}..{}\n", k,
+                   planned.levels.left_sizes[k].cols, planned.levels.left_sizes[k].rows,
+                   planned.levels.ranges[k].min, planned.levels.ranges[k].max);
+    }
+    fmt::print("tiles     {}\n", tile_text(b));
+    fmt::print("threads   {}\n", b.threads);
+    fmt::print(
+        "memory    {:.0f} MiB at most, of {:.0f} allowed (prepare {:.0f}, coarse {:.0f}, "
+        "tiles {:.0f}, refine {:.0f})\n",
+        mebi(b.estimate_bytes), mebi(b.memory_bytes), mebi(b.prepare_bytes),
+        mebi(b.coarse_bytes), mebi(b.tiles_bytes), mebi(b.refine_bytes));
+    fmt::print("disk      {:.0f} MiB scratch, at most {:.0f} MiB results\n",
+               mebi(b.scratch_disk_bytes), mebi(b.output_disk_bytes));
+}
+
+} // namespace
+
+void log_plan(const PlannedJob& planned)
+{
+    const auto range = planned.shape.asked;
+    spdlog::info(
+        "{} x {} px, disparities {}..{}, mode {}, cost {}, {} levels; tiles {}; at most "
+        "{:.0f} MiB",
+        planned.shape.left.cols, planned.shape.left.rows, range.min, range.max,
+        name(planned.job.matcher.mode), name(planned.job.matcher.cost), planned.levels.levels(),
+        tile_text(planned.budget), mebi(planned.budget.estimate_bytes));
+}
+
+void log_summary(const MatchSummary& summary, const PlannedJob& planned)
+{
+    const auto percent = [&summary](std::int64_t n) {
+        return 100.0 * static_cast<double>(n) / static_cast<double>(summary.pixels);
+    };
+    std::string reasons;
+    for (const auto& [bit, reason] : matcher::kReasonNames) {
+        for (unsigned b = 0; b < 16; ++b) {
+            if ((bit >> b & 1) != 0 && summary.with_reason[b] > 0) {
+                reasons += fmt::format("{}{} {:.1f} %", reasons.empty() ? "" : ", ", reason,
+                                       percent(summary.with_reason[b]));
+            }
+        }
+    }
+    spdlog::info("{}: {:.1f} % of the pixels have a value{}{}",
+                 planned.job.outputs.disparity.string(), percent(summary.with_value),
+                 reasons.empty() ? "" : "; ", reasons);
+}
+
+void print_plan(const PlannedJob& planned, bool json)
+{
+    if (json) {
+        fmt::print("{}\n", plan_json(planned).dump(2));
+    } else {
+        print_table(planned);
+    }
+}
+
+ProgressLog::ProgressLog()
+    : start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) != 0)
+{
+}
+
+void ProgressLog::operator()(int done, int all)
+{
+    const int percent = static_cast<int>(100LL * done / all);
+    const int step = terminal_ ? 1 : 10;
+    if (percent / step == last_percent_ / step && done != all) {
+        return;
+    }
+    last_percent_ = percent;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+    const double left_s = elapsed.count() / done * (all - done);
+    if (!terminal_) {
+        spdlog::info("{} of {} tiles, {:.0f} s left", done, all, left_s);
+        return;
+    }
+    const std::string bar(static_cast<std::size_t>(percent / 4), '#');
+    fmt::print(stderr, "\r[{:<25}] {:3} %  {} of {} tiles, {:.0f} s left   {}", bar, percent,
+               done, all, left_s, done == all ? "\n" : "");
+}
+
+} // namespace hsgm::pipeline

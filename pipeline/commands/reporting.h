@@ -1,0 +1,30 @@
+#pragma once
+
+#include "pipeline/stages/match_stage.h"
+
+#include <chrono>
+
+namespace hsgm::pipeline {
+
+/// One line on standard error about what is going to happen.
+void log_plan(const PlannedJob& planned);
+
+/// What came of it: completeness, and how many pixels carry each reason.
+void log_summary(const MatchSummary& summary, const PlannedJob& planned);
+
+/// The plan on standard output, as a table or as JSON.
+void print_plan(const PlannedJob& planned, bool json);
+
+/// Shows the tiles done: a bar with the time left on a terminal, plain lines elsewhere.
+class ProgressLog {
+public:
+    ProgressLog();
+    void operator()(int done, int all);
+
+private:
+    std::chrono::steady_clock::time_point start_;
+    bool terminal_;
+    int last_percent_ = -1;
+};
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,192 @@
+#include "pipeline/configuration.h"
+
+#include "io/error.h"
+#include "pipeline/budget.h"
+#include "pipeline/error.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+using io::ConfigSection;
+
+matcher::Options read_matcher(ConfigSection section)
+{
+    matcher::Options o;
+    o.mode = matcher::mode_from_name(
+        section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
+    o.cost = matcher::cost_from_name(
+        section.choice("cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
+    o.paths = section.integer("paths", o.paths, 4, 16);
+    o.levels = section.integer_or("levels", "auto", std::nullopt, 1, 12).value_or(0);
+    o.window_px = section.integer("window", o.window_px, 16, 1024);
+    o.halo_px = section.integer("halo", o.halo_px, 0, 1024);
+    o.p1 = section.integer("p1", o.p1, 0, 4000);
+    o.p2 = section.integer("p2", o.p2, 0, 4000);
+    o.prior = section.flag("prior", o.prior);
+    o.prune = section.flag("prune", o.prune);
+    o.left_right_px =
+        section.integer_or("left_right_px", "off", o.left_right_px, 0, 64).value_or(-1);
+    o.median = section.integer_or("median", "off", o.median, 1, 5).value_or(1);
+    try {
+        o.validate();
+    } catch (const std::invalid_argument& error) {
+        section.fail("", error.what());
+    }
+    return o;
+}
+
+tiling::TileOrder read_order(ConfigSection& section)
+{
+    const std::string order =
+        section.choice("order", "rows", {"rows", "columns", "reversed", "shuffled"});
+    if (order == "columns") {
+        return tiling::TileOrder::columns;
+    }
+    if (order == "reversed") {
+        return tiling::TileOrder::reversed;
+    }
+    return order == "shuffled" ? tiling::TileOrder::shuffled : tiling::TileOrder::rows;
+}
+
+RunOptions read_run(ConfigSection section)
+{
+    constexpr int kLargestTile = 1 << 20;
+    RunOptions run;
+    run.tile_size_px = section.integer_or("tile_size", "auto", std::nullopt, 0, kLargestTile);
+    run.order = read_order(section);
+    run.threads = section.integer_or("threads", "auto", std::nullopt, 1, 1024).value_or(0);
+    const auto memory = section.byte_amount("memory", "80%");
+    run.memory_bytes = memory.of(available_memory_bytes());
+    check_device(section.text("device", "auto"));
+    return run;
+}
+
+RectifiedGeometry read_geometry(ConfigSection section)
+{
+    RectifiedGeometry geometry;
+    geometry.height_per_px_m = section.optional_number("height_per_px_m");
+    geometry.focal_px = section.optional_number("focal_px", 1e-9);
+    geometry.baseline_m = section.optional_number("baseline_m", 1e-9);
+    const auto reference = section.optional_number("reference_height_m");
+    if (reference && !geometry.height_per_px_m) {
+        section.fail("reference_height_m", "has no meaning without height_per_px_m: "
+                                           "give both, or neither");
+    }
+    geometry.reference_height_m = reference.value_or(0);
+    if (geometry.focal_px.has_value() != geometry.baseline_m.has_value()) {
+        section.fail(geometry.focal_px ? "focal_px" : "baseline_m",
+                     "gives a depth only together: set both focal_px and baseline_m");
+    }
+    if (geometry.focal_px && geometry.height_per_px_m) {
+        section.fail("focal_px",
+                     "makes a depth and height_per_px_m a height: give one of them");
+    }
+    return geometry;
+}
+
+OutputPaths output_paths(const std::filesystem::path& folder, const RectifiedGeometry& geometry,
+                         bool hillshade)
+{
+    OutputPaths outputs;
+    outputs.disparity = folder / "disparity.tif";
+    outputs.confidence = folder / "confidence.tif";
+    outputs.reasons = folder / "reasons.tif";
+    if (geometry.height_per_px_m) {
+        outputs.height = folder / "height.tif";
+        if (hillshade) {
+            outputs.hillshade = folder / "hillshade.tif";
+        }
+    }
+    if (geometry.focal_px) {
+        outputs.depth = folder / "depth.tif";
+    }
+    return outputs;
+}
+
+// What a configuration must say. Asked for last, so that a misspelt key is named as such
+// rather than as the one that is missing.
+void require_kind(const ConfigSection& section, const std::string& kind)
+{
+    if (kind.empty()) {
+        section.fail("kind", "is missing: it must be rectified in this version");
+    }
+    if (kind != "rectified") {
+        section.fail("kind", fmt::format("must be rectified in this version, not '{}'", kind));
+    }
+}
+
+tiling::DisparityRange require_disparity(const ConfigSection& section,
+                                         const std::optional<std::pair<int, int>>& range)
+{
+    if (!range) {
+        section.fail("disparity", "must be given as [min, max] in pixels for geometry "
+                                  "rectified, which holds no heights to find it from");
+    }
+    return {range->first, range->second};
+}
+
+} // namespace
+
+void check_device(const std::string& device)
+{
+    if (device == "auto" || device == "cpu") {
+        return;
+    }
+    if (device == "cuda" || device.rfind("cuda:", 0) == 0) {
+        throw BudgetError(
+            "device '" + device +
+            "' was asked for, but this build has no CUDA worker; use auto or cpu");
+    }
+    throw io::ConfigError("the device must be auto, cpu, cuda or cuda:N, not '" + device + "'");
+}
+
+Job read_knobs(io::ConfigDocument& document)
+{
+    ConfigSection root = document.root();
+    Job job;
+    job.matcher = read_matcher(root.section("matcher"));
+    job.run = read_run(root.section("run"));
+    return job;
+}
+
+Configuration read_configuration(io::ConfigDocument& document)
+{
+    ConfigSection root = document.root();
+    ConfigSection pair = root.section("pair");
+    ConfigSection geometry = root.section("geometry");
+    ConfigSection output = root.section("output");
+    ConfigSection matcher = root.section("matcher");
+    Configuration configuration;
+    Job& job = configuration.job;
+    job = read_knobs(document);
+    const std::string kind = geometry.text("kind", "");
+    const auto disparity = matcher.range_or("disparity", "auto");
+    job.geometry = read_geometry(geometry);
+    const auto creation_options = output.texts("creation_options");
+    const bool hillshade = output.flag("hillshade", true);
+    const bool has_left = pair.has("left");
+    const bool has_right = pair.has("right");
+    const bool has_folder = output.has("folder");
+    if (has_left && has_right && has_folder) {
+        job.left = pair.image("left");
+        job.right = pair.image("right");
+        configuration.folder = output.path("folder");
+    }
+    document.refuse_unknown();
+    require_kind(geometry, kind);
+    job.disparity = require_disparity(matcher, disparity);
+    job.left = pair.image("left");
+    job.right = pair.image("right");
+    configuration.folder = output.path("folder");
+    job.outputs = output_paths(configuration.folder, job.geometry, hillshade);
+    job.outputs.creation_options = creation_options;
+    configuration.used_yaml = document.effective_yaml();
+    return configuration;
+}
+
+} // namespace hsgm::pipeline

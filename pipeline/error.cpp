@@ -1,0 +1,26 @@
+#include "pipeline/error.h"
+
+#include <atomic>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "used in a signal handler");
+
+} // namespace
+
+void request_stop() noexcept
+{
+    stop_requested.store(true);
+}
+
+void check_stop()
+{
+    if (stop_requested.load()) {
+        throw Interrupted("interrupted: no output was written or changed");
+    }
+}
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,26 @@
+#include "pipeline/job.h"
+
+#include <fmt/format.h>
+
+namespace hsgm::pipeline {
+
+std::map<std::string, std::string> provenance(const Job& job)
+{
+    const matcher::Options m = job.matcher.resolved();
+    return {
+        {"HSGM_MODE", std::string(name(m.mode))},
+        {"HSGM_COST", std::string(name(m.cost))},
+        {"HSGM_DISPARITY", fmt::format("{}..{} px", job.disparity.min, job.disparity.max)},
+        {"HSGM_PATHS", std::to_string(m.paths)},
+        {"HSGM_LEVELS", m.levels == 0 ? "auto" : std::to_string(m.levels)},
+        {"HSGM_WINDOW", fmt::format("{} px, halo {} px", m.window_px, m.halo_px)},
+        {"HSGM_PENALTIES", fmt::format("p1 {}, p2 {}", m.p1, m.p2)},
+        {"HSGM_PRIOR", m.prior ? "on" : "off"},
+        {"HSGM_PRUNE", m.prune ? "on" : "off"},
+        {"HSGM_LEFT_RIGHT",
+         m.left_right_px < 0 ? "off" : fmt::format("{} px", m.left_right_px)},
+        {"HSGM_MEDIAN", std::to_string(m.median)},
+    };
+}
+
+} // namespace hsgm::pipeline

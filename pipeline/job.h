@@ -1,0 +1,61 @@
+#pragma once
+
+#include "io/image_spec.h"
+#include "matcher/options.h"
+#include "tiling/disparity_range.h"
+#include "tiling/tile_plan.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hsgm::pipeline {
+
+/// How a run is carried out. Nothing here may change a pixel of a result.
+struct RunOptions {
+    std::optional<int> tile_size_px; ///< 0: untiled; absent: chosen to fit the memory
+    tiling::TileOrder order = tiling::TileOrder::rows;
+    int threads = 0;                           ///< 0: one for each processor
+    std::optional<std::uint64_t> memory_bytes; ///< absent: 80 % of what the machine offers
+};
+
+/// How a disparity of a rectified pair becomes a height or a depth; all absent: it does not.
+struct RectifiedGeometry {
+    /// height = reference_height_m + disparity * height_per_px_m
+    std::optional<double> height_per_px_m;
+    double reference_height_m = 0;
+    /// depth = focal_px * baseline_m / disparity
+    std::optional<double> focal_px;
+    std::optional<double> baseline_m;
+};
+
+/// Where results go. The parents of all paths must exist.
+struct OutputPaths {
+    std::filesystem::path disparity;
+    std::filesystem::path confidence;
+    std::filesystem::path reasons;
+    std::filesystem::path height; ///< empty: not asked for; likewise below
+    std::filesystem::path depth;
+    std::filesystem::path hillshade;
+    std::vector<std::string> creation_options; ///< GDAL's KEY=VALUE, for every raster
+};
+
+/// One rectified pair to be matched: all that is known before a pixel is read.
+struct Job {
+    io::ImageSpec left;
+    io::ImageSpec right;
+    tiling::DisparityRange disparity;
+    matcher::Options matcher;
+    RectifiedGeometry geometry;
+    RunOptions run;
+    OutputPaths outputs;
+};
+
+/// What defines a job's result, for the metadata of its rasters: the same for every tile
+/// size, thread count and memory, and without paths or times.
+std::map<std::string, std::string> provenance(const Job& job);
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "io/geo_reference.h"
+#include "pipeline/budget.h"
+#include "pipeline/job.h"
+#include "pipeline/stages/refine_stage.h"
+
+#include <functional>
+
+namespace hsgm::pipeline {
+
+/// A job whose inputs were opened and found good, and whose budget is known.
+struct PlannedJob {
+    Job job;
+    matcher::PairShape shape;
+    matcher::LevelPlan levels;
+    Budget budget;
+    io::GeoReference geo; ///< of the left image; its rasters inherit it
+    int pyramid_levels = 1;
+};
+
+/// Opens the inputs, checks everything that can be checked before the first pixel (exist,
+/// sizes, range, outputs writable, memory) and plans. Throws InputError, ConfigError,
+/// StorageError or BudgetError.
+PlannedJob plan_job(const Job& job);
+
+/// Called with the number of tiles done and of all tiles.
+using Progress = std::function<void(int done, int all)>;
+
+/// Matches a pair from its files to its rasters. Everything intermediate lives in a hidden
+/// scratch folder beside the outputs and goes away at the end, also after an error.
+MatchSummary run_job(const PlannedJob& planned, const Progress& progress);
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,143 @@
+#include "pipeline/stages/prepare_stage.h"
+
+#include "io/error.h"
+#include "matcher/reduce.h"
+#include "pipeline/error.h"
+#include "pipeline/stages/pixel_mapping.h"
+#include "tiling/pyramid.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+using Raster = io::ScratchRaster<std::uint16_t>;
+using tiling::Patch;
+using tiling::Rect;
+using tiling::Size;
+
+std::vector<Raster> make_levels(const std::filesystem::path& folder, const std::string& name,
+                                const std::vector<Size>& sizes)
+{
+    std::vector<Raster> levels;
+    levels.reserve(sizes.size());
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+        levels.emplace_back(folder, name + std::to_string(k) + ".raw", sizes[k]);
+    }
+    return levels;
+}
+
+// Copies a source into level 0 and returns the counts of its valid pixels.
+std::unique_ptr<PixelHistogram>
+copy_full_resolution(io::RasterSource& source, const PixelMapping& mapping, Raster& level0)
+{
+    auto histogram = std::make_unique<PixelHistogram>();
+    const int rows = strip_rows(source);
+    const int cols = source.size().cols;
+    tiling::Image<double> values({rows, cols});
+    tiling::Image<std::uint16_t> pixels({rows, cols});
+    for (int row = 0; row < source.size().rows; row += rows) {
+        check_stop();
+        const int count = std::min(rows, source.size().rows - row);
+        const Rect strip{row, 0, count, cols};
+        source.read(strip, values.view().part({0, 0, count, cols}));
+        const auto n = static_cast<std::size_t>(strip.area());
+        std::transform(values.pixels().begin(), values.pixels().begin() + std::ptrdiff_t(n),
+                       pixels.data(), mapping);
+        for (const std::uint16_t pixel : pixels.pixels().first(n)) {
+            ++(*histogram)[pixel];
+        }
+        level0.write(strip, pixels.view().part({0, 0, count, cols}));
+    }
+    (*histogram)[matcher::kNodataPixel] = 0;
+    return histogram;
+}
+
+void reduce_level(const Raster& fine, Raster& coarse)
+{
+    const Size size = coarse.size();
+    const int rows = std::clamp((1 << 20) / std::max(size.cols, 1), 1, 256);
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, tiling::ceil_div(size.rows, rows), 1),
+        [&](const tbb::blocked_range<int>& strips) {
+            for (int i = strips.begin(); i < strips.end(); ++i) {
+                check_stop();
+                const Rect part = intersect({i * rows, 0, rows, size.cols}, rect_of(size));
+                Patch<std::uint16_t> taps(
+                    intersect(tiling::pyramid_taps(part), rect_of(fine.size())));
+                fine.read(taps.rect, taps.pixels.view());
+                tiling::Image<std::uint16_t> reduced(part.size());
+                matcher::reduce(taps, fine.size(), part, reduced);
+                coarse.write(part, reduced.view());
+            }
+        });
+}
+
+matcher::Tone fill(io::RasterSource& source, const PixelMapping& mapping,
+                   std::vector<Raster>& levels)
+{
+    const auto histogram = copy_full_resolution(source, mapping, levels.front());
+    if (std::all_of(histogram->begin(), histogram->end(), [](auto n) { return n == 0; })) {
+        throw io::InputError(source.description() +
+                             " has no valid pixel: everything is nodata or masked; check the "
+                             "nodata value and the mask");
+    }
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+        reduce_level(levels[k - 1], levels[k]);
+    }
+    return find_tone(source.pixel_type(), *histogram);
+}
+
+Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
+{
+    Patch<std::uint16_t> patch(part);
+    raster.read(part, patch.pixels.view());
+    return patch;
+}
+
+} // namespace
+
+PreparedPair::PreparedPair(io::RasterSource& left, io::RasterSource& right, int levels,
+                           const std::filesystem::path& scratch_folder)
+{
+    left_.levels =
+        make_levels(scratch_folder, "left", tiling::pyramid_sizes(left.size(), levels));
+    right_.levels =
+        make_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels));
+    const PixelMapping mapping = find_mapping(left, right);
+    tbb::parallel_invoke([&] { left_.tone = fill(left, mapping, left_.levels); },
+                         [&] { right_.tone = fill(right, mapping, right_.levels); });
+}
+
+matcher::LevelImages PreparedPair::read(int level, const tiling::LevelSupport& support) const
+{
+    const auto k = static_cast<std::size_t>(level);
+    return {read_part(left_.levels[k], support.left_image),
+            read_part(right_.levels[k], support.right_image)};
+}
+
+matcher::LevelImages PreparedPair::read_whole(int level) const
+{
+    const auto k = static_cast<std::size_t>(level);
+    return {read_part(left_.levels[k], rect_of(left_.levels[k].size())),
+            read_part(right_.levels[k], rect_of(right_.levels[k].size()))};
+}
+
+std::int64_t PreparedPair::disk_bytes(const matcher::PairShape& shape, int levels)
+{
+    std::int64_t pixels = 0;
+    for (const Size full : {shape.left, shape.right}) {
+        for (const Size size : tiling::pyramid_sizes(full, levels)) {
+            pixels += size.area();
+        }
+    }
+    return pixels * static_cast<std::int64_t>(sizeof(std::uint16_t));
+}
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "io/geo_reference.h"
+#include "io/raster_source.h"
+#include "io/scratch_raster.h"
+#include "matcher/level_plan.h"
+#include "matcher/matcher.h"
+#include "pipeline/job.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace hsgm::pipeline {
+
+/// Both images of a pair as the matcher wants them, every pyramid level, on scratch disk.
+/// Reads are thread-safe.
+class PreparedPair {
+public:
+    /// Streams both sources through once (twice for float sources) and reduces them level by
+    /// level; memory does not grow with the images. Throws InputError for an image without a
+    /// single valid pixel.
+    PreparedPair(io::RasterSource& left, io::RasterSource& right, int levels,
+                 const std::filesystem::path& scratch_folder);
+
+    matcher::Tone left_tone() const { return left_.tone; }
+    matcher::Tone right_tone() const { return right_.tone; }
+
+    /// The parts of level `level` that a tile's support names.
+    matcher::LevelImages read(int level, const tiling::LevelSupport& support) const;
+    /// The whole images of a level.
+    matcher::LevelImages read_whole(int level) const;
+
+    /// Bytes of scratch disk that a pair takes.
+    static std::int64_t disk_bytes(const matcher::PairShape& shape, int levels);
+
+private:
+    struct Pyramid {
+        std::vector<io::ScratchRaster<std::uint16_t>> levels;
+        matcher::Tone tone;
+    };
+    Pyramid left_;
+    Pyramid right_;
+};
+
+} // namespace hsgm::pipeline
