@@ -137,6 +137,7 @@ std::string ErrorCollector::quote() const
     } else if (!warnings_.empty()) {
         text = "GDAL says: " + warnings_.front();
     }
+    text.erase(text.find_last_not_of(". \n") + 1); // sentences go on after a quote
     return system_message_.empty() ? text : text + " (" + system_message_ + ")";
 }
 
