@@ -21,7 +21,8 @@ matcher::Options read_matcher(ConfigSection section)
         section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
     o.cost = matcher::cost_from_name(
         section.choice("cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
-    o.paths = section.integer("paths", o.paths, 4, 16);
+    o.paths =
+        std::stoi(section.choice("paths", std::to_string(o.paths), {"4", "5", "8", "16"}));
     o.levels = section.integer_or("levels", "auto", std::nullopt, 1, 12).value_or(0);
     o.window_px = section.integer("window", o.window_px, 16, 1024);
     o.halo_px = section.integer("halo", o.halo_px, 0, 1024);
@@ -35,7 +36,10 @@ matcher::Options read_matcher(ConfigSection section)
     try {
         o.validate();
     } catch (const std::invalid_argument& error) {
-        section.fail("", error.what());
+        // "p1 must be ...": the option, named like its key, and what is wrong with it.
+        const std::string sentence = error.what();
+        const std::size_t space = sentence.find(' ');
+        section.fail(sentence.substr(0, space), sentence.substr(space + 1));
     }
     return o;
 }
@@ -53,6 +57,22 @@ tiling::TileOrder read_order(ConfigSection& section)
     return order == "shuffled" ? tiling::TileOrder::shuffled : tiling::TileOrder::rows;
 }
 
+// The device must be one that this build has.
+void check_device(ConfigSection& section)
+{
+    const std::string device = section.text("device", "auto");
+    if (device == "auto" || device == "cpu") {
+        return;
+    }
+    if (device == "cuda" || device.starts_with("cuda:")) {
+        throw BudgetError(
+            fmt::format("{}: '{}' is '{}', but this build has no CUDA worker; use auto or cpu",
+                        section.place_of("device"), section.name_of("device"), device));
+    }
+    section.fail("device",
+                 fmt::format("is '{}'; it must be auto, cpu, cuda or cuda:N", device));
+}
+
 RunOptions read_run(ConfigSection section)
 {
     constexpr int kLargestTile = 1 << 20;
@@ -62,7 +82,7 @@ RunOptions read_run(ConfigSection section)
     run.threads = section.integer_or("threads", "auto", std::nullopt, 1, 1024).value_or(0);
     const auto memory = section.byte_amount("memory", "80%");
     run.memory_bytes = memory.of(available_memory_bytes());
-    check_device(section.text("device", "auto"));
+    check_device(section);
     return run;
 }
 
@@ -70,6 +90,10 @@ RectifiedGeometry read_geometry(ConfigSection section)
 {
     RectifiedGeometry geometry;
     geometry.height_per_px_m = section.optional_number("height_per_px_m");
+    if (geometry.height_per_px_m == 0.0) {
+        section.fail("height_per_px_m", "is 0, which makes all heights equal; leave it out for "
+                                        "disparities alone");
+    }
     geometry.focal_px = section.optional_number("focal_px", 1e-9);
     geometry.baseline_m = section.optional_number("baseline_m", 1e-9);
     const auto reference = section.optional_number("reference_height_m");
@@ -131,19 +155,6 @@ tiling::DisparityRange require_disparity(const ConfigSection& section,
 }
 
 } // namespace
-
-void check_device(const std::string& device)
-{
-    if (device == "auto" || device == "cpu") {
-        return;
-    }
-    if (device == "cuda" || device.rfind("cuda:", 0) == 0) {
-        throw BudgetError(
-            "device '" + device +
-            "' was asked for, but this build has no CUDA worker; use auto or cpu");
-    }
-    throw io::ConfigError("the device must be auto, cpu, cuda or cuda:N, not '" + device + "'");
-}
 
 Job read_knobs(io::ConfigDocument& document)
 {

@@ -15,15 +15,13 @@ struct Configuration {
 };
 
 /// Reads the configuration of `hsgm run` (docs/configuration.md). Unknown keys, wrong types
-/// and values that are not allowed throw ConfigError naming file, line, key and what is.
-/// Paths of the outputs lie in `output.folder`.
+/// and values that are not allowed throw ConfigError naming file, line, key and what is; a
+/// device that this build does not have, BudgetError. Paths of the outputs lie in
+/// `output.folder`.
 Configuration read_configuration(io::ConfigDocument& document);
 
 /// Reads only `matcher` and `run`, for `hsgm match`: images, range and output come from the
 /// command line.
 Job read_knobs(io::ConfigDocument& document);
-
-/// The device of `run.device` must be one that this build has. Throws BudgetError.
-void check_device(const std::string& device);
 
 } // namespace hsgm::pipeline
