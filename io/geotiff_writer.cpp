@@ -77,6 +77,7 @@ struct GeoTiffWriter::State {
     Size grid; // blocks down and across
     std::unordered_map<std::int64_t, Block> pending;
     std::vector<bool> done; // by block, row by row
+    bool complete = false;  // closed, and found whole
     bool sparse = false;    // SPARSE_OK: GDAL may leave out blocks of nothing but nodata
     Dataset dataset;
 
@@ -207,6 +208,13 @@ void GeoTiffWriter::State::close()
     }
 }
 
+void check_creation_options(const std::string& path, PixelType type,
+                            const std::vector<std::string>& creation_options)
+{
+    register_gdal();
+    geotiff_options(path, type, creation_options);
+}
+
 GeoTiffWriter::GeoTiffWriter(std::string path, Size size, PixelType type, RasterOptions options)
 {
     register_gdal();
@@ -261,7 +269,7 @@ void GeoTiffWriter::write_bytes(const Rect& rect, const std::byte* pixels, Size 
     }
 }
 
-void GeoTiffWriter::finish()
+void GeoTiffWriter::complete()
 {
     State& state = *state_;
     if (state.dataset == nullptr) {
@@ -276,7 +284,22 @@ void GeoTiffWriter::finish()
     }
     state.close();
     check_stored_blocks(state.file, state.size, state.type, state.sparse);
-    state.file.publish();
+    state.complete = true;
+}
+
+void GeoTiffWriter::publish()
+{
+    if (!state_->complete) {
+        throw std::logic_error("GeoTiffWriter: " + state_->file.final_path() +
+                               " is not complete");
+    }
+    state_->file.publish();
+}
+
+void GeoTiffWriter::finish()
+{
+    complete();
+    publish();
 }
 
 } // namespace hsgm::io

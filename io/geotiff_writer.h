@@ -29,6 +29,10 @@ struct RasterOptions {
     std::vector<std::string> creation_options;
 };
 
+/// Throws ConfigError for creation options that GDAL refuses; touches no disk.
+void check_creation_options(const std::string& path, PixelType type,
+                            const std::vector<std::string>& creation_options);
+
 /// Writes a GeoTIFF of one band, in pieces of any shape and order, each pixel once. Works on
 /// a hidden temporary file; the output has its name only after `finish()`.
 ///
@@ -70,9 +74,15 @@ public:
         write(rect, pixels.view());
     }
 
-    /// Fills pixels that nobody wrote with the nodata value (else 0), closes the file, opens
-    /// it again to see that every block is there, waits for the disk, and renames. Throws
-    /// StorageError; an earlier output of that name is then untouched.
+    /// Fills pixels that nobody wrote with the nodata value (else 0), closes the file and
+    /// opens it again to see that every block is there. Throws StorageError; an earlier
+    /// output of that name is untouched.
+    void complete();
+    /// Waits for the disk and gives a complete file its name. Throws StorageError; an earlier
+    /// output of that name is then untouched.
+    void publish();
+    /// Both, for an output that stands alone. Of several, publish none before all are
+    /// complete.
     void finish();
 
 private:

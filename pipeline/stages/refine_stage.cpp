@@ -122,17 +122,24 @@ public:
 
     void finish()
     {
-        for (auto* optional : {&height_, &depth_}) {
-            if (*optional) {
-                (*optional)->finish();
-            }
-        }
-        confidence_.finish();
-        reasons_.finish();
-        disparity_.finish();
+        for_each([](io::GeoTiffWriter& writer) { writer.complete(); });
+        for_each([](io::GeoTiffWriter& writer) { writer.publish(); });
     }
 
 private:
+    template <typename Action>
+    void for_each(Action action)
+    {
+        for (auto* optional : {&height_, &depth_}) {
+            if (*optional) {
+                action(**optional);
+            }
+        }
+        for (io::GeoTiffWriter* writer : {&confidence_, &reasons_, &disparity_}) {
+            action(*writer);
+        }
+    }
+
     io::GeoTiffWriter disparity_;
     io::GeoTiffWriter confidence_;
     io::GeoTiffWriter reasons_;
