@@ -16,7 +16,7 @@ ScratchFolder::ScratchFolder(const std::filesystem::path& parent)
     if (::mkdtemp(name.data()) == nullptr) {
         throw StorageError("Cannot make a scratch folder in " + parent.string() + ": " +
                            std::generic_category().message(errno) +
-                           "; name a writable folder.");
+                           "; name a folder that is there and writable.");
     }
     path_ = name;
 }

@@ -5,6 +5,7 @@
 #include "io/raster_source.h"
 #include "io/scratch_folder.h"
 #include "pipeline/error.h"
+#include "pipeline/stages/output_check.h"
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/tile_graph.h"
 
@@ -130,6 +131,7 @@ PlannedJob plan_job(const Job& job)
     const io::RasterSource left(job.left);
     const io::RasterSource right(job.right);
     check_sizes(left, right);
+    check_outputs(job);
     PlannedJob planned;
     planned.job = job;
     planned.shape = {left.size(), right.size(), job.disparity};
