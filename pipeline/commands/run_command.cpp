@@ -76,10 +76,11 @@ void run(const Arguments& arguments)
     }
     log_plan(planned);
     make_folder(configuration.folder);
-    io::write_text_file((configuration.folder / "config.used.yaml").string(),
-                        configuration.used_yaml);
     ProgressLog progress;
     const MatchSummary summary = run_job(planned, std::ref(progress));
+    // Last, because until then the folder may hold the results of an earlier run.
+    io::write_text_file((configuration.folder / "config.used.yaml").string(),
+                        configuration.used_yaml);
     log_summary(summary, planned);
 }
 
