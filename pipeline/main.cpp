@@ -5,6 +5,7 @@
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
 #include "pipeline/commands/synth_command.h"
+#include "pipeline/commands/usage.h"
 #include "pipeline/error.h"
 
 #include <CLI/CLI.hpp>
@@ -56,8 +57,7 @@ int run(CLI::App& app, int argc, char** argv)
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const CLI::Error& error) {
-        app.exit(error);
-        return kUsage;
+        return fail(kUsage, hsgm::pipeline::usage_sentence(app, error).c_str());
     } catch (const hsgm::io::ConfigError& error) {
         return fail(kUsage, error.what());
     } catch (const hsgm::io::InputError& error) {
