@@ -165,6 +165,10 @@ void run_seams(const Options& options)
 void run_disparity(const Options& options)
 {
     const DisparityScore score = score_disparity(inputs_of(options), options.thresholds_px);
+    if (score.evaluated == 0) {
+        throw io::InputError("no pixel of " + options.inputs.truth +
+                             " has a truth that counts; check its nodata value and the mask");
+    }
     options.json ? print_score_as_json(score) : print_score(score);
 }
 
