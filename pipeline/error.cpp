@@ -19,7 +19,7 @@ void request_stop() noexcept
 void check_stop()
 {
     if (stop_requested.load()) {
-        throw Interrupted("interrupted: no output was written or changed");
+        throw Interrupted("interrupted: every output is whole, or as it was before");
     }
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/stages/disparity_rows.h"
 
 #include "io/error.h"
+#include "pipeline/error.h"
 #include "pipeline/evaluate/occlusion.h"
 
 #include <algorithm>
@@ -31,6 +32,7 @@ public:
 
     void read(int row, int rows)
     {
+        check_stop();
         const tiling::Size strip{rows, size().cols};
         stored_ = tiling::Image<double>(strip);
         values_ = tiling::Image<float>(strip);

@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "io/geotiff_writer.h"
+#include "pipeline/error.h"
 #include "pipeline/synth/renderer.h"
 
 #include <tbb/parallel_for.h>
@@ -61,6 +62,7 @@ void write_raster(const std::string& path, tiling::Size size, io::RasterOptions 
     // Whole rows of stored blocks, so that no block waits for its lower half.
     const int strip_rows = std::max(writer.block_size().rows, kTask.rows);
     for (int row = 0; row < size.rows; row += strip_rows) {
+        check_stop();
         const Rect strip{row, 0, std::min(strip_rows, size.rows - row), size.cols};
         tiling::Patch<T> pixels(strip);
         in_parallel(strip, [&](const Rect& part) { render(part, pixels.view_of(part)); });
