@@ -3,9 +3,8 @@
 #include "io/png.h"
 #include "io/scratch_folder.h"
 #include "io/scratch_raster.h"
+#include "tests/faults/small_disk.h"
 #include "tests/unit/io/sample_rasters.h"
-
-#include <sys/mount.h>
 
 #include <iostream>
 #include <random>
@@ -13,41 +12,10 @@
 using namespace hsgm::io;
 using namespace hsgm::io::samples;
 using Catch::Matchers::Contains;
+using hsgm::tests::SmallDisk;
 using hsgm::tiling::Image;
 
 namespace {
-
-/// A disk of 1 MiB of its own. Needs root's rights; `mounted()` says whether it had them.
-class SmallDisk {
-public:
-    SmallDisk()
-    {
-        mounted_ = ::mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=1m") == 0;
-        if (!mounted_) {
-            // ctest looks for these words and reports the test as skipped.
-            std::cout << "cannot mount a small disk here: run as root to test full disks\n";
-        }
-    }
-    ~SmallDisk()
-    {
-        if (mounted_) {
-            ::umount2(folder_.path().c_str(), MNT_DETACH);
-        }
-    }
-
-    bool mounted() const { return mounted_; }
-    /// Root may write anywhere but to a read-only mount.
-    void make_read_only()
-    {
-        REQUIRE(::mount("tmpfs", folder_.path().c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY,
-                        "size=1m") == 0);
-    }
-    const TemporaryFolder& folder() const { return folder_; }
-
-private:
-    TemporaryFolder folder_;
-    bool mounted_ = false;
-};
 
 void write_noise(const std::string& path, int side, const std::string& compression)
 {

@@ -1,0 +1,81 @@
+#include "tests/end_to_end/pairs.h"
+#include "tests/end_to_end/rasters.h"
+
+using namespace hsgm::tests;
+using nlohmann::json;
+
+namespace {
+
+const std::string kCity = R"(size: [320, 448]
+seed: 4
+city: {cell_px: 80, height_min_px: 3, height_max_px: 20}
+left: {noise_gray: 1}
+right: {noise_gray: 1, gain: 0.9, offset: 0.02}
+)";
+
+const std::string kRun = R"(pair: {left: scene/left.tif, right: scene/right.tif}
+geometry: {kind: rectified, height_per_px_m: 0.5, reference_height_m: 40}
+output: {folder: result}
+matcher: {disparity: [0, 31]}
+)";
+
+// The scene rendered, matched and waiting in result/.
+void make_city(const TemporaryFolder& folder)
+{
+    put_bytes(folder / "city.yaml", kCity);
+    put_bytes(folder / "run.yaml", kRun);
+    hsgm_does({"synth", folder / "city.yaml", "-o", folder / "scene"});
+    hsgm_does({"run", folder / "run.yaml"});
+}
+
+} // namespace
+
+TEST_CASE("a city goes from its scene file to heights with a small error")
+{
+    const TemporaryFolder folder;
+    make_city(folder);
+    const json score = json::parse(
+        hsgm_does({"evaluate", "disparity", folder / "result/disparity.tif",
+                   folder / "scene/truth_left.tif", "--mask", folder / "scene/visible_left.tif",
+                   "--thresholds", "1,2", "--json"})
+            .out);
+    CHECK(score["density_percent"] > 95);
+    CHECK(score["bad"][0]["bad_answered_percent"] < 3);
+    CHECK(std::abs(score["median_error_px"].get<double>()) < 0.05);
+    CHECK(score["nmad_px"] < 0.2);
+    const json seams =
+        json::parse(hsgm_does({"evaluate", "seams", folder / "result/disparity.tif", "--truth",
+                               folder / "scene/truth_left.tif", "--mask",
+                               folder / "scene/visible_left.tif", "--window", "64", "--json"})
+                        .out);
+    CHECK(seams["window_64"]["border_pairs"] > 1000);
+    CHECK(seams["window_64"]["ratio_low"] <= 1.05); // so few borders: a wide interval
+}
+
+TEST_CASE("a run writes its rasters and its configuration, and from that the same again")
+{
+    const TemporaryFolder folder;
+    make_city(folder);
+    Snapshot first = snapshot(folder / "result");
+    CHECK(names_in(first) == std::vector<std::string>{"confidence.tif", "config.used.yaml",
+                                                      "disparity.tif", "height.tif",
+                                                      "hillshade.tif", "reasons.tif"});
+    hsgm_does({"run", folder / "result/config.used.yaml", "-o", folder / "again", "--tile-size",
+               "100", "--threads", "1"});
+    Snapshot second = snapshot(folder / "again");
+    first.erase("config.used.yaml");
+    second.erase("config.used.yaml");
+    CHECK((first == second));
+}
+
+TEST_CASE("a run replaces the results of an earlier one")
+{
+    const TemporaryFolder folder;
+    make_city(folder);
+    const Snapshot first = snapshot(folder / "result");
+    hsgm_does({"run", folder / "run.yaml", "--set", "matcher.disparity=[0,9]"});
+    Snapshot second = snapshot(folder / "result");
+    CHECK(names_in(second) == names_in(first));
+    CHECK(second["disparity.tif"] != first.at("disparity.tif"));
+    CHECK_THAT(second["config.used.yaml"], Catch::Matchers::Contains("disparity: [0, 9]"));
+}

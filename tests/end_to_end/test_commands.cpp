@@ -1,0 +1,73 @@
+#include "tests/end_to_end/pairs.h"
+#include "tests/end_to_end/rasters.h"
+
+using namespace hsgm::tests;
+using Catch::Matchers::Contains;
+using nlohmann::json;
+
+TEST_CASE("every command has help with an example")
+{
+    const std::vector<std::vector<std::string>> commands{{},
+                                                         {"match"},
+                                                         {"run"},
+                                                         {"plan"},
+                                                         {"evaluate", "disparity"},
+                                                         {"evaluate", "seams"},
+                                                         {"synth"}};
+    for (std::vector<std::string> command : commands) {
+        command.push_back("--help");
+        const Outcome outcome = hsgm_does(command);
+        CHECK_THAT(outcome.out, Contains("\n  hsgm " + (command.size() > 1 ? command[0] : "")));
+        CHECK(outcome.err.empty());
+    }
+    CHECK_THAT(hsgm_does({"evaluate", "--help"}).out, Contains("seams"));
+    CHECK_THAT(hsgm_does({"info", "--help"}).out, Contains("hsgm info"));
+    CHECK_THAT(hsgm_does({"info"}).out, Contains("GDAL"));
+    CHECK_THAT(hsgm_does({"--version"}).out, Contains("hsgm 0."));
+}
+
+TEST_CASE("plan tells as JSON what a run would do, and writes nothing")
+{
+    const TemporaryFolder folder;
+    make_pair(folder, {200, 300});
+    put_bytes(folder / "run.yaml", pair_config(", levels: 3"));
+    const Snapshot before = snapshot(folder.path().string());
+    const json plan = json::parse(
+        hsgm_does({"plan", folder / "run.yaml", "--json", "--tile-size", "64"}).out);
+    REQUIRE(plan["levels"].size() == 3);
+    CHECK(plan["levels"][0]["rows"] == 200);
+    CHECK(plan["levels"][0]["cols"] == 300);
+    CHECK(plan["levels"][0]["disparity_min"] <= 0);
+    CHECK(plan["levels"][0]["disparity_max"] >= 10);
+    CHECK(plan["levels"][2]["rows"] == 50);
+    CHECK(plan["levels"][2]["cols"] == 75);
+    CHECK(plan["levels"][2]["disparity_max"] >= 2);
+    CHECK(plan["tile_size_px"] == 64);
+    CHECK(plan["tiles"] == 4 * 5);
+    CHECK(plan["memory_bytes"]["estimate"] <= plan["memory_bytes"]["allowed"]);
+    const Outcome dry = hsgm_does({"run", folder / "run.yaml", "--dry-run"});
+    CHECK_THAT(dry.out, Contains("level 2") && Contains("75 x 50 px"));
+    CHECK((snapshot(folder.path().string()) == before));
+}
+
+TEST_CASE("every configuration that is shipped works")
+{
+    const TemporaryFolder folder;
+    make_pair(folder, {64, 400});
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(HSGM_CONFIGS_DIR)) {
+        const std::string path = entry.path().string();
+        INFO(path);
+        if (entry.path().extension() != ".yaml") {
+            continue;
+        }
+        if (entry.path().filename().string().starts_with("scene-")) {
+            ++scenes;
+            hsgm_does({"synth", path, "-o", folder / "scene", "--set", "size=[24,40]"});
+        } else {
+            hsgm_does({"plan", path, "--set", "pair.left=" + (folder / "left.tif"), "--set",
+                       "pair.right=" + (folder / "right.tif")});
+        }
+    }
+    CHECK(scenes >= 4);
+}

@@ -1,0 +1,68 @@
+#include "tests/end_to_end/pairs.h"
+#include "tests/end_to_end/rasters.h"
+
+#include <cstdlib>
+
+using namespace hsgm::tests;
+using nlohmann::json;
+
+// Real pairs from the data folder: environment variable HSGM_DATA_DIR, or beside the sources.
+namespace {
+
+std::string data_folder()
+{
+    const char* named = std::getenv("HSGM_DATA_DIR");
+    return named != nullptr ? named : HSGM_DEFAULT_DATA_DIR;
+}
+
+bool has_data(const std::string& scene)
+{
+    if (std::filesystem::exists(data_folder() + "/" + scene)) {
+        return true;
+    }
+    WARN("SKIPPED: no test data in " + data_folder() + "/" + scene + "; see HSGM_DATA_DIR");
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("Cones, all pixels answered, has at most 3.7 % of errors above 1 px")
+{
+    if (!has_data("middlebury_cones")) {
+        return;
+    }
+    const TemporaryFolder folder;
+    const std::string scene = data_folder() + "/middlebury_cones/";
+    hsgm_does({"match", scene + "left.png", scene + "right.png", "-o", folder / "d.tif",
+               "--disparity", "0,63", "--set", "matcher.left_right_px=off", "--set",
+               "matcher.median=off"});
+    const json score = json::parse(
+        hsgm_does({"evaluate", "disparity", folder / "d.tif", scene + "disp_left_x4.png",
+                   "--scale", "4", "--mask", scene + "mask_nonocc.png", "--mask-value", "255",
+                   "--thresholds", "1", "--json"})
+            .out);
+    CHECK(score["bad"][0]["bad_percent"] <= 3.7);
+}
+
+TEST_CASE("a satellite pair with negative disparities is run and scored at 3 px")
+{
+    if (!has_data("sat_us3d_JAX_079_006_007")) {
+        return;
+    }
+    const TemporaryFolder folder;
+    const std::string scene = data_folder() + "/sat_us3d_JAX_079_006_007/";
+    put_bytes(folder / "run.yaml", "pair: {left: '" + scene + "left.png', right: '" + scene +
+                                       "right.png'}\n"
+                                       "geometry: {kind: rectified}\n"
+                                       "output: {folder: result}\n"
+                                       "matcher: {disparity: [-64, 64]}\n");
+    hsgm_does({"run", folder / "run.yaml"});
+    const json score =
+        json::parse(hsgm_does({"evaluate", "disparity", folder / "result/disparity.tif",
+                               scene + "disp_left.tif", "--truth-nodata", "-999",
+                               "--nonoccluded", "zbuffer", "--thresholds", "3", "--json"})
+                        .out);
+    CHECK(score["evaluated_pixels"] > 700000);
+    CHECK(score["density_percent"] > 60);
+    CHECK(score["bad"][0]["bad_answered_percent"] < 15);
+}

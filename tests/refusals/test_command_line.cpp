@@ -1,0 +1,70 @@
+#include "tests/refusals/earlier_result.h"
+
+#include "tests/catch.h"
+
+using namespace hsgm::tests;
+
+TEST_CASE("a command line that names no command is refused with the commands there are")
+{
+    const EarlierResult place;
+    place.refused({}, 2, {"a command is missing", "match, run, plan", "hsgm --help"});
+    place.refused({"mtach"}, 2, {"no command 'mtach'", "did you mean 'match'?"});
+    place.refused({"fly"}, 2, {"no command 'fly'", "there are match, run, plan"});
+    place.refused({"evaluate"}, 2, {"a command is missing", "disparity, seams"});
+    place.refused({"evaluate", "dsim"}, 2, {"hsgm evaluate", "no command 'dsim'"});
+}
+
+TEST_CASE("missing and unknown options are refused with the help to read")
+{
+    const EarlierResult place;
+    const std::string left = place / "left.tif";
+    const std::string right = place / "right.tif";
+    const std::string d = place / "d.tif";
+    place.refused({"match", left}, 2, {"RIGHT is required", "hsgm match --help"});
+    place.refused({"match", left, right, "-o", d}, 2, {"--disparity is required"});
+    place.refused({"match", left, right, "--disparity", "0,10"}, 2, {"--output is required"});
+    place.refused({"match", left, right, "-o", d, "--disparity", "0,10", "--fast"}, 2,
+                  {"not expected: --fast", "hsgm match --help"});
+    place.refused({"run"}, 2, {"CONFIG is required", "hsgm run --help"});
+    place.refused({"synth", place / "run.yaml"}, 2, {"--output is required"});
+    place.refused({"--log-level", "loud", "info"}, 2, {"--log-level", "loud"});
+    place.refused({"evaluate", "seams", d, "--window", "1"}, 2, {"--window", "2 to"});
+}
+
+TEST_CASE("disparity ranges that cannot be searched are refused")
+{
+    const EarlierResult place;
+    const auto refused = [&](const std::string& range, const std::vector<std::string>& words) {
+        place.refused_pair("left.tif", "right.tif", 2, words, {"--disparity=" + range});
+    };
+    refused("10,0", {"--disparity 10,0 is reversed", "smaller number first"});
+    refused("10", {"must be MIN,MAX in whole pixels", "'10'"});
+    refused("1.5,3", {"must be MIN,MAX in whole pixels", "'1.5,3'"});
+    refused("a,b", {"must be MIN,MAX in whole pixels", "'a,b'"});
+    refused("0,10,20", {"must be MIN,MAX in whole pixels"});
+    refused("90,95", {"90..95", "no left pixel has a counterpart", "-89..89"});
+    refused("-5100,-5000", {"-5100..-5000", "no left pixel has a counterpart", "-89..89"});
+    refused("0,100000", {"0..100000", "must lie within -16000..16000"});
+}
+
+TEST_CASE("overrides are refused by key as the file's own keys are")
+{
+    const EarlierResult place;
+    const auto refused = [&](const std::string& set, const std::vector<std::string>& words) {
+        place.refused_pair("left.tif", "right.tif", 2, words, {"--set", set});
+    };
+    refused("matcher.cots=hmi", {"--set matcher.cots", "did you mean 'cost'?"});
+    refused("matcher.cost=hm", {"'matcher.cost' is 'hm'", "census5x5, census7x7"});
+    refused("foo=1", {"unknown key 'foo'", "matcher, run"});
+    refused("novalue", {"--set novalue", "KEY=VALUE"});
+    refused("=3", {"KEY=VALUE"});
+    refused("matcher=1", {"'matcher' is '1'", "must be a section"});
+    refused("matcher.cost=[1", {"--set matcher.cost", "no valid YAML"});
+    refused("run.tile_size=-1", {"'run.tile_size' is '-1'", "from 0 to 1048576 or 'auto'"});
+    place.refused_pair("left.tif", "right.tif", 2, {"run.threads", "'0'", "from 1 to 1024"},
+                       {"--threads", "0"});
+    place.refused_pair("left.tif", "right.tif", 2, {"run.memory", "8bananas", "8GiB"},
+                       {"--memory", "8bananas"});
+    place.refused_pair("left.tif", "right.tif", 2, {"run.device", "banana", "auto, cpu, cuda"},
+                       {"--device", "banana"});
+}
