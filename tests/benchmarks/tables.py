@@ -109,6 +109,27 @@ COARSE = [
 ]
 
 
+def readable(truth, folder):
+    """GDAL reads no PFM, but its rows (float32, bottom to top) through a virtual raster."""
+    if not truth.endswith(".pfm"):
+        return truth
+    with open(truth, "rb") as pfm:
+        header = [pfm.readline() for _ in range(3)]
+    cols, rows = (int(n) for n in header[1].split())
+    order = "LSB" if float(header[2]) < 0 else "MSB"
+    first = sum(len(line) for line in header) + (rows - 1) * cols * 4
+    vrt = os.path.join(folder, "truth.vrt")
+    with open(vrt, "w", encoding="ascii") as file:
+        file.write(
+            f'<VRTDataset rasterXSize="{cols}" rasterYSize="{rows}">'
+            '<VRTRasterBand dataType="Float32" band="1" subClass="VRTRawRasterBand">'
+            f'<SourceFilename relativeToVRT="0">{os.path.abspath(truth)}</SourceFilename>'
+            f"<ImageOffset>{first}</ImageOffset><PixelOffset>4</PixelOffset>"
+            f"<LineOffset>{-4 * cols}</LineOffset><ByteOrder>{order}</ByteOrder>"
+            "</VRTRasterBand></VRTDataset>")
+    return vrt
+
+
 def score_scene(scene, settings, folder, threshold=1):
     _, place, disparity, truth, options = scene
     data = os.path.join(PATHS["data"], place)
@@ -118,7 +139,7 @@ def score_scene(scene, settings, folder, threshold=1):
     left, right = (os.path.join(data, next(f for f in sorted(images) if f.startswith(side)))
                    for side in ("left", "right"))
     match(left, right, disparity, settings, test)
-    return score(test, os.path.join(data, truth), "--thresholds", str(threshold), *here)
+    return score(test, readable(os.path.join(data, truth), folder), "--thresholds", str(threshold), *here)
 
 
 def middlebury(folder):
