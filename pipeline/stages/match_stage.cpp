@@ -168,8 +168,10 @@ MatchSummary run_job(const PlannedJob& planned, const Progress& progress)
     tbb::task_arena arena(planned.budget.threads);
     const MatchSummary summary = arena.execute([&] { return run_in_arena(planned, progress); });
     if (!planned.job.outputs.hillshade.empty()) {
+        io::HillshadeOptions options;
+        options.creation_options = planned.job.outputs.creation_options;
         io::write_hillshade(planned.job.outputs.height.string(),
-                            planned.job.outputs.hillshade.string());
+                            planned.job.outputs.hillshade.string(), options);
     }
     write_pictures(planned.job.outputs);
     return summary;
