@@ -19,7 +19,7 @@ constexpr int kPriorMax = 4;
 /// The coarser level's normalised sums are capped at this before they become the prior.
 constexpr int kPriorCap = 16;
 /// A 7 x 7 neighbourhood whose tones span less than this counts as low texture.
-constexpr int kTextureGate = 6;
+constexpr int kTextureGate = 7;
 /// How much dearer than P2 a coarse disparity is that was never searched.
 constexpr int kUnsearchedMargin = 24;
 /// Right-view key of a right pixel that no left pixel met.
