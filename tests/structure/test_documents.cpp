@@ -3,14 +3,17 @@
 
 #include "io/config.h"
 #include "io/error.h"
+#include "matcher/reasons.h"
 #include "pipeline/configuration.h"
 #include "pipeline/stages/scene_config.h"
 #include "tests/catch.h"
 #include "tests/structure/documents.h"
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
 #include <sstream>
 
@@ -147,6 +150,23 @@ TEST_CASE("docs/configuration.md has every key with its default")
 TEST_CASE("the JSON Schema has every key")
 {
     CHECK(schema_keys(text_of("configs/schema/run.schema.json")) == names(defaults()));
+}
+
+TEST_CASE("docs/outputs.md has every reason with its bit, and whether it takes the value away")
+{
+    const std::string page = text_of("docs/outputs.md");
+    for (const auto& [bit, name] : hsgm::matcher::kReasonNames) {
+        std::ostringstream row;
+        row << "| " << std::countr_zero(static_cast<unsigned>(bit)) << " | " << std::hex
+            << std::uppercase << std::setw(4) << std::setfill('0') << static_cast<unsigned>(bit)
+            << " | `" << name << "` |";
+        const auto start = page.find(row.str());
+        CAPTURE(row.str());
+        REQUIRE(start != std::string::npos);
+        const std::string line = page.substr(start, page.find('\n', start) - start);
+        const bool invalidates = (bit & hsgm::matcher::kInvalidating) != 0;
+        CHECK(line.ends_with(invalidates ? "| no |" : "| yes |"));
+    }
 }
 
 TEST_CASE("every file in configs can be read")
