@@ -74,10 +74,11 @@ HSGM_HOST_DEVICE constexpr int confidence_of(int least, int rival)
     return c < 1 ? 1 : c;
 }
 
-/// Rounds a count of disparities up to what the vector code stores for a pixel.
+/// Rounds a count of disparities up to what the vector code stores for a pixel: full vectors
+/// of 32 bytes, but for the shortest ranges.
 constexpr int padded_count(int count)
 {
-    return (count + 15) / 16 * 16;
+    return count <= 16 ? 16 : (count + 31) / 32 * 32;
 }
 
 } // namespace hsgm::matcher
