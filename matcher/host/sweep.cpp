@@ -50,6 +50,28 @@ HWY_INLINE void add_to_sums(D, V path, std::uint16_t* HWY_RESTRICT sums, bool fi
     }
 }
 
+// Folds a vector to 128 bits, pairs of bytes to 16-bit lanes, and asks for their minimum,
+// which is one instruction there.
+template <class D>
+HWY_INLINE hn::TFromD<D> least_lane(D d, hn::Vec<D> v)
+{
+    using L = hn::TFromD<D>;
+    if constexpr (sizeof(L) * hn::MaxLanes(d) > 16) {
+        const hn::Half<D> half;
+        return least_lane(half, hn::Min(hn::UpperHalf(half, v), hn::LowerHalf(half, v)));
+    } else {
+        const hn::RepartitionToWide<hn::CappedTag<std::uint8_t, 16>> d16;
+        if constexpr (sizeof(L) == 1) {
+            const auto pairs = hn::BitCast(d16, v);
+            const auto low = hn::And(pairs, hn::Set(d16, 0xFF));
+            return static_cast<L>(
+                hn::GetLane(hn::MinOfLanes(d16, hn::Min(low, hn::ShiftRight<8>(pairs)))));
+        } else {
+            return hn::GetLane(hn::MinOfLanes(d16, v));
+        }
+    }
+}
+
 template <class D>
 HWY_INLINE auto load_costs(D d, const std::uint8_t* costs)
 {
@@ -94,7 +116,7 @@ struct Step {
                 add_to_sums(d, path, sums + i, first);
             }
         }
-        return reduce_min(minimum);
+        return least_lane(d, minimum);
     }
 
     // L = C, where a path begins.
@@ -111,28 +133,10 @@ struct Step {
                 add_to_sums(d, path, sums + i, first);
             }
         }
-        return reduce_min(minimum);
+        return least_lane(d, minimum);
     }
 
 private:
-    // Highway 1.0 reduces no 8-bit lanes: fold them by halves of a stored vector instead.
-    static HWY_INLINE L reduce_min(hn::Vec<D> v)
-    {
-        const D d;
-        HWY_ALIGN L lanes[kLanes];
-        hn::StoreU(v, d, lanes);
-        const hn::CappedTag<L, 16 / sizeof(L)> d128;
-        auto m = hn::LoadU(d128, lanes);
-        for (std::size_t i = hn::Lanes(d128); i < hn::Lanes(d); i += hn::Lanes(d128)) {
-            m = hn::Min(m, hn::LoadU(d128, lanes + i));
-        }
-        hn::StoreU(m, d128, lanes);
-        L least = lanes[0];
-        for (std::size_t i = 1; i < hn::Lanes(d128); ++i) {
-            least = std::min(least, lanes[i]);
-        }
-        return least;
-    }
 };
 
 template <typename L>
@@ -369,7 +373,9 @@ namespace hsgm::matcher {
 
 const char* vector_instructions()
 {
-    return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets());
+    // Of those compiled and supported here, the best has the lowest bit.
+    const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+    return hwy::TargetName(usable & -usable);
 }
 
 } // namespace hsgm::matcher
