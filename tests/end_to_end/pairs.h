@@ -29,13 +29,11 @@ inline Pixels noise(tiling::Size size, std::uint32_t seed = 1)
 /// does not show comes from its other end.
 inline Pixels shifted(const Pixels& left, tiling::Size size, int shift_px)
 {
+    const auto cols = static_cast<std::size_t>(size.cols);
     Pixels right(left.size());
-    for (int r = 0; r < size.rows; ++r) {
-        for (int c = 0; c < size.cols; ++c) {
-            const int from = (c + shift_px + size.cols) % size.cols;
-            right[static_cast<std::size_t>(r * size.cols + c)] =
-                left[static_cast<std::size_t>(r * size.cols + from)];
-        }
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        const std::size_t row_begin = i - i % cols;
+        right[i] = left[row_begin + (i + static_cast<std::size_t>(shift_px)) % cols];
     }
     return right;
 }

@@ -15,7 +15,7 @@ TEST_CASE("every command has help with an example")
                                                          {"evaluate", "seams"},
                                                          {"synth"}};
     for (std::vector<std::string> command : commands) {
-        command.push_back("--help");
+        command.emplace_back("--help");
         const Outcome outcome = hsgm_does(command);
         CHECK_THAT(outcome.out, Contains("\n  hsgm " + (command.size() > 1 ? command[0] : "")));
         CHECK(outcome.err.empty());

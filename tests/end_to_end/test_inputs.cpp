@@ -79,7 +79,7 @@ TEST_CASE("nodata and a mask of the configuration take pixels out, with a reason
     make_pair(folder);
     Pixels mask(static_cast<std::size_t>(kSize.area()), 255);
     for (std::size_t i = 30; i < 40; ++i) {
-        mask[20 * 90 + i] = 0;
+        mask[1800 + i] = 0; // in row 20
     }
     make_raster(folder / "mask.tif", GDT_Byte, kSize, {mask});
     run_left(folder, "mask: mask.tif, nodata: 77");

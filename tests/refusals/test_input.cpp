@@ -8,6 +8,7 @@ using namespace hsgm::tests;
 
 namespace {
 
+constexpr std::size_t kPixels = 5400; // of 60 x 90
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 void declare_nodata(GDALDatasetH dataset)
@@ -58,8 +59,8 @@ TEST_CASE("images that make no pair are refused")
 {
     EarlierResult place;
     make_raster(place / "tall.tif", GDT_Byte, {61, 90}, {noise({61, 90})});
-    make_raster(place / "none.tif", GDT_Byte, {60, 90}, {Pixels(60 * 90, 0)}, declare_nodata);
-    make_raster(place / "nan.tif", GDT_Float32, {60, 90}, {Pixels(60 * 90, kNan)});
+    make_raster(place / "none.tif", GDT_Byte, {60, 90}, {Pixels(kPixels, 0)}, declare_nodata);
+    make_raster(place / "nan.tif", GDT_Float32, {60, 90}, {Pixels(kPixels, kNan)});
     place.remember();
     place.refused_pair("left.tif", "tall.tif", 3,
                        {"equal heights", "left.tif", "60", "tall.tif", "61", "resample"});
@@ -73,7 +74,7 @@ TEST_CASE("bands and masks that are not there are refused")
 {
     EarlierResult place;
     make_raster(place / "tall.tif", GDT_Byte, {61, 90}, {noise({61, 90})});
-    make_raster(place / "zero.tif", GDT_Byte, {60, 90}, {Pixels(60 * 90, 0)});
+    make_raster(place / "zero.tif", GDT_Byte, {60, 90}, {Pixels(kPixels, 0)});
     const auto refused_left = [&](const std::string& left,
                                   const std::vector<std::string>& says) {
         put_bytes(place / "bad.yaml", "pair: {left: {path: left.tif, " + left +
@@ -93,7 +94,7 @@ TEST_CASE("bands and masks that are not there are refused")
 TEST_CASE("an evaluation of nothing is refused")
 {
     EarlierResult place;
-    make_raster(place / "none.tif", GDT_Byte, {60, 90}, {Pixels(60 * 90, 0)});
+    make_raster(place / "none.tif", GDT_Byte, {60, 90}, {Pixels(kPixels, 0)});
     make_raster(place / "tall.tif", GDT_Float32, {61, 90}, {noise({61, 90})});
     place.remember();
     place.refused({"evaluate", "disparity", place / "d.tif", place / "none.tif"}, 3,
