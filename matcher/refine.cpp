@@ -2,6 +2,7 @@
 
 #include "matcher/kernel.h"
 #include "matcher/matcher.h"
+#include "matcher/median.h"
 #include "matcher/reasons.h"
 
 #include <algorithm>
@@ -99,6 +100,11 @@ std::int32_t median_at(const Patch<std::int32_t>& disparity,
                 values[static_cast<std::size_t>(count++)] = disparity.at(r, c);
             }
         }
+    }
+    if (count == 9) {
+        return median_of_nine<std::int32_t>({values[0], values[1], values[2], values[3],
+                                             values[4], values[5], values[6], values[7],
+                                             values[8]});
     }
     const auto middle = values.begin() + (count - 1) / 2;
     std::nth_element(values.begin(), middle, values.begin() + count);

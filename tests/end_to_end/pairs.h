@@ -25,8 +25,8 @@ inline Pixels noise(tiling::Size size, std::uint32_t seed = 1)
     return pixels;
 }
 
-/// The right image of a scene whose disparity is `shift_px` everywhere; what the left image
-/// does not show comes from its other end.
+/// The right image of a scene whose disparity is `shift_px` (not negative) everywhere; what the
+/// left image does not show comes from its other end.
 inline Pixels shifted(const Pixels& left, tiling::Size size, int shift_px)
 {
     const auto cols = static_cast<std::size_t>(size.cols);
