@@ -52,14 +52,22 @@ private:
     // a mismatch, otherwise it is occluded (Hirschmueller 2008, section 2.4).
     bool matches_elsewhere(int row, int col) const
     {
-        const int first = std::max(shape_.asked.min, col - (shape_.right.cols - 1));
-        const int last = std::min(shape_.asked.max, col);
-        for (int d = first; d <= last; ++d) {
-            if (agrees(row, col - d, d)) {
-                return true;
-            }
+        const int first = std::max(0, col - shape_.asked.max);
+        const int last = std::min(shape_.right.cols - 1, col - shape_.asked.min);
+        if (first > last) {
+            return false;
         }
-        return false;
+        // No branch inside, so that the compiler compares whole vectors. kNoKey stands for a
+        // disparity of asked.min + 65535, which agrees with none.
+        const std::uint32_t* keys = &input_.right_keys.at(row, first);
+        const auto width = static_cast<unsigned>(2 * tolerance_);
+        unsigned found = 0;
+        for (int i = 0; i <= last - first; ++i) {
+            const int right_winner = static_cast<int>(keys[i] & 0xFFFFU) + shape_.asked.min;
+            const int difference = right_winner - (col - first - i);
+            found |= static_cast<unsigned>(difference + tolerance_) <= width ? 1U : 0U;
+        }
+        return found != 0;
     }
 
     const RefineInput& input_;
