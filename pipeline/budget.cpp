@@ -68,6 +68,22 @@ std::string mebibytes(std::int64_t bytes)
     return fmt::format("{} MiB", (bytes + kMiB - 1) / kMiB);
 }
 
+// What would make it fit: only what the stages over the limit depend on.
+std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_given)
+{
+    std::string text = "allow more with --memory";
+    if (std::max(budget.prepare_bytes, budget.refine_bytes) > budget.memory_bytes) {
+        return text; // every run takes that
+    }
+    if (mode == matcher::Mode::sgm) {
+        return text + ", or use mode hsgm, which is not solved in one piece";
+    }
+    if (budget.tiles_bytes > budget.memory_bytes) {
+        text += tile_size_given ? ", choose smaller tiles" : ", use fewer threads";
+    }
+    return text;
+}
+
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
     const int floats = 1 + !job.outputs.height.empty() + !job.outputs.depth.empty();
@@ -122,14 +138,12 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
         }
     }
     const auto mode = matcher.options().mode;
-    throw BudgetError(fmt::format(
-        "mode {} with tiles of {} px and {} threads needs {} of memory, but may take {}: "
-        "allow more with --memory{}{}",
-        name(mode), budget.tile_size_px, budget.threads, mebibytes(budget.estimate_bytes),
-        mebibytes(budget.memory_bytes),
-        job.run.tile_size_px ? ", choose smaller tiles" : ", use fewer threads",
-        mode == matcher::Mode::sgm ? ", or use mode hsgm, which is not solved in one piece"
-                                   : ""));
+    throw BudgetError(
+        fmt::format("mode {} with tiles of {} px and {} threads needs {} of memory, but may "
+                    "take {}: {}",
+                    name(mode), budget.tile_size_px, budget.threads,
+                    mebibytes(budget.estimate_bytes), mebibytes(budget.memory_bytes),
+                    advice(budget, mode, job.run.tile_size_px.has_value())));
 }
 
 } // namespace hsgm::pipeline
