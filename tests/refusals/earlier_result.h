@@ -5,9 +5,9 @@
 
 namespace hsgm::tests {
 
-/// A folder with a good pair, run.yaml for it, and the results of earlier runs: d.tif and its
-/// siblings by `hsgm match`, and files named like those of `hsgm run` in result/. Every
-/// refusal must leave all of it alone.
+/// A folder with a good pair, run.yaml for it, and files that stand for the results of
+/// earlier runs: d.tif and its siblings of `hsgm match`, and those of `hsgm run` in result/.
+/// Every refusal must leave all of it alone.
 class EarlierResult {
 public:
     EarlierResult();

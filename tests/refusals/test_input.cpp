@@ -96,6 +96,7 @@ TEST_CASE("an evaluation of nothing is refused")
     EarlierResult place;
     make_raster(place / "none.tif", GDT_Byte, {60, 90}, {Pixels(kPixels, 0)});
     make_raster(place / "tall.tif", GDT_Float32, {61, 90}, {noise({61, 90})});
+    make_raster(place / "d.tif", GDT_Float32, {60, 90}, {noise({60, 90})});
     place.remember();
     place.refused({"evaluate", "disparity", place / "d.tif", place / "none.tif"}, 3,
                   {"no pixel of", "none.tif", "check its nodata value"});
