@@ -1,0 +1,35 @@
+#include "tests/catch.h"
+
+#include "tests/seam/seam_figure.h"
+
+using namespace hsgm;
+using namespace hsgm::seam;
+using matcher::Mode;
+
+namespace {
+
+void check_no_seam(const StereoPair& pair)
+{
+    const SeamFigures hsgm = seam_figures(pair, with_mode(Mode::hsgm, 8));
+    const SeamFigures windows_alone = seam_figures(pair, with_mode(Mode::local, 0));
+    INFO("hsgm: " << text(hsgm));
+    INFO("local: " << text(windows_alone));
+    CHECK(hsgm.raw.ratio <= 1.05);
+    CHECK(hsgm.refined.ratio <= 1.05);
+    // The figure can tell: windows on their own have steps at their borders.
+    CHECK(windows_alone.raw.ratio_low > hsgm.raw.ratio_high);
+    CHECK(windows_alone.refined.ratio_low > hsgm.refined.ratio_high);
+    CHECK(windows_alone.raw.ratio > 1.2);
+}
+
+} // namespace
+
+TEST_CASE("a matched city has no steps at window borders")
+{
+    check_no_seam(render(city({640, 768})));
+}
+
+TEST_CASE("matched slopes have no steps at window borders")
+{
+    check_no_seam(render(ramps({640, 768})));
+}
