@@ -1,4 +1,4 @@
-#include "io/creation_options.h"
+#include "io/creation_options_private.h"
 
 #include "io/error.h"
 #include "io/gdal_private.h"

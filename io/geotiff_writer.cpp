@@ -1,6 +1,6 @@
 #include "io/geotiff_writer.h"
 
-#include "io/creation_options.h"
+#include "io/creation_options_private.h"
 #include "io/error.h"
 #include "io/gdal_private.h"
 #include "io/gdal_session.h"

@@ -1,10 +1,10 @@
 #include "io/hillshade.h"
 
-#include "io/creation_options.h"
+#include "io/creation_options_private.h"
 #include "io/error.h"
 #include "io/gdal_private.h"
 #include "io/pending_file.h"
-#include "io/raster_channels.h"
+#include "io/raster_channels_private.h"
 #include "io/stored_blocks.h"
 
 #include <gdal_utils.h>

@@ -4,7 +4,7 @@
 #include "io/error.h"
 #include "io/gdal_private.h"
 #include "io/png.h"
-#include "io/raster_channels.h"
+#include "io/raster_channels_private.h"
 
 #include <algorithm>
 #include <cmath>

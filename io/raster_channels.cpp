@@ -1,4 +1,4 @@
-#include "io/raster_channels.h"
+#include "io/raster_channels_private.h"
 
 #include "io/error.h"
 

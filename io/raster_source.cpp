@@ -2,7 +2,7 @@
 
 #include "io/error.h"
 #include "io/gdal_private.h"
-#include "io/raster_channels.h"
+#include "io/raster_channels_private.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>

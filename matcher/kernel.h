@@ -52,6 +52,7 @@ HSGM_HOST_DEVICE constexpr int prior_of(int sum, int least_sum, int paths)
 
 /// Sub-pixel position of winner `d` in 1/256 px from the sums at d-1, d, d+1.
 /// Between a parabola and straight lines; least pixel locking of the rules tried.
+/// Offsets lie in [-127, 128], so the result tells its winner (`winner_of`).
 HSGM_HOST_DEVICE constexpr std::int32_t subpixel_q8(int d, int below, int at, int above)
 {
     const int a = below - at;
@@ -63,7 +64,7 @@ HSGM_HOST_DEVICE constexpr std::int32_t subpixel_q8(int d, int below, int at, in
     }
     const int x = (least << 8) / most;
     const int offset = 128 - ((x * x + 256 * x) >> 10);
-    return a < b ? d * 256 - offset : d * 256 + offset;
+    return a < b ? d * 256 - (offset < 127 ? offset : 127) : d * 256 + offset;
 }
 
 /// Confidence 1..255 from the least sum and the least one two or more disparities away.

@@ -37,7 +37,7 @@ struct TileMatch {
                                               ///< of the right image; ~0 where none
 };
 
-/// The winning whole disparity of a value in 1/256 px: offsets lie in (-128, 128].
+/// The winning whole disparity of a value in 1/256 px: offsets lie in [-127, 128].
 constexpr int winner_of(std::int32_t disparity_q8)
 {
     return (disparity_q8 + 127) >> 8;

@@ -203,8 +203,10 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     o.median = random.one_of({1, 3, 3, 5});
     theme.vary(random, o);
 
-    const Size left{random.between(1, theme.most_side_px),
-                    random.between(1, theme.most_side_px)};
+    Size left{random.between(1, theme.most_side_px), random.between(1, theme.most_side_px)};
+    if (theme.thin) {
+        (random.chance(50) ? left.rows : left.cols) = random.between(1, 6);
+    }
     const int right_cols =
         random.chance(50) ? left.cols : random.between(1, theme.most_side_px);
     const auto most_count = static_cast<int>(std::clamp<std::int64_t>(

@@ -30,6 +30,7 @@ struct Case {
 /// Bounds of what a theme's cases look like; `vary` sets what the theme is about.
 struct Theme {
     int most_side_px = 40;
+    bool thin = false; ///< one side is six pixels at most
     /// Least and most disparities asked for; the range lies anywhere that the images allow.
     int least_count = 1;
     int most_count = 40;

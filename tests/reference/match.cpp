@@ -22,7 +22,7 @@ int sub_pixel_q8(const PixelCosts& sums, int winner)
     }
     const std::uint32_t x = 256 * smaller / larger;
     const int offset = 128 - static_cast<int>((x * x + 256 * x) >> 10);
-    return a < b ? 256 * winner - offset : 256 * winner + offset;
+    return a < b ? 256 * winner - std::min(offset, 127) : 256 * winner + offset;
 }
 
 std::uint8_t confidence_of(const PixelCosts& sums, int winner)

@@ -56,6 +56,11 @@ TEST_CASE("matcher and twin agree on small images, whatever the options")
     compare(small(), 200'000, 800);
 }
 
+TEST_CASE("matcher and twin agree on thin images")
+{
+    compare(thin(), 250'000, 600);
+}
+
 TEST_CASE("matcher and twin agree where ranges are pruned")
 {
     compare(pruned(), 300'000, 100);

@@ -11,6 +11,7 @@ TEST_CASE("matcher and twin agree on many thousands of cases")
     const std::pair<Theme, int> themes[] = {
         {tiny(), 20'000},
         {small(), 8'000},
+        {thin(), 8'000},
         {pruned(), 1'000},
         {wide_ranges(), 2'000},
         {dear(), 4'000},

@@ -23,6 +23,21 @@ Theme small()
     return theme;
 }
 
+Theme thin()
+{
+    Theme theme;
+    theme.most_side_px = 60;
+    theme.thin = true;
+    theme.most_count = 60;
+    theme.most_work = 60'000;
+    theme.vary = [](Random& random, Options& o) {
+        o.mode = random.one_of({Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::local});
+        o.levels = random.between(2, 5);
+        o.window_px = 16;
+    };
+    return theme;
+}
+
 Theme pruned()
 {
     Theme theme;

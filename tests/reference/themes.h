@@ -10,6 +10,8 @@ namespace hsgm::reference {
 Theme tiny();
 /// Small images, whatever the options.
 Theme small();
+/// Lines of pixels, whose coarse levels are a handful of them.
+Theme thin();
 /// True shifts, several windows and levels, ranges well above what pruning leaves.
 Theme pruned();
 /// Ranges far beyond what narrow images can meet.

@@ -20,7 +20,7 @@ void make_pending(const PendingFile& file)
 
 } // namespace
 
-TEST_CASE("a whole file passes; one of another size or type does not")
+TEST_CASE("a whole file passes, one of another size or type does not")
 {
     const PendingFile file("/vsimem/io-blocks.tif");
     make_pending(file);

@@ -24,7 +24,7 @@ CensusBits rows_of(const std::string& row, int rows)
 
 } // namespace
 
-TEST_CASE("the twin's census bits say which neighbours are below; nodata never is")
+TEST_CASE("the twin's census bits say which neighbours are below, nodata never is")
 {
     const auto image = pixels({{5, 9, kNodata}});
     CHECK(census_at(image, 0, 1, 5, 5) == rows_of("11000", 5));
