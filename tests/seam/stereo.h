@@ -18,7 +18,7 @@ struct StereoPair {
     tiling::Image<std::uint16_t> left;
     tiling::Image<std::uint16_t> right;
     tiling::DisparityRange asked;
-    tiling::Image<float> truth_px;      ///< empty where there is none; likewise below
+    tiling::Image<float> truth_px;       ///< empty where there is none; likewise below
     tiling::Image<std::uint8_t> visible; ///< 255: shows in both images
 
     matcher::PairShape shape() const { return {left.size(), right.size(), asked}; }
@@ -26,7 +26,7 @@ struct StereoPair {
 
 /// A city on hills with a little of everything: negative and positive disparities, plain
 /// lots, holes and a border without data.
-synth::Scene city(tiling::Size size, std::uint64_t seed = 5);
+synth::Scene city(tiling::Size size, std::uint64_t seed);
 
 /// The scene rendered; asks for the disparities that it has, and `margin_px` more.
 StereoPair render(const synth::Scene& scene, int margin_px = 1);
@@ -60,7 +60,10 @@ public:
     std::vector<matcher::LevelImages> images(const tiling::Rect& core, int margin_px = 0) const;
     matcher::TileMatch match(const tiling::Rect& core,
                              const std::vector<matcher::LevelImages>& images) const;
-    matcher::TileMatch match(const tiling::Rect& core) const { return match(core, images(core)); }
+    matcher::TileMatch match(const tiling::Rect& core) const
+    {
+        return match(core, images(core));
+    }
 
     /// All tiles, each from its own support, in the given order. Size 0: untiled.
     Whole match_all(int tile_size_px, tiling::TileOrder order = tiling::TileOrder::rows) const;

@@ -9,6 +9,7 @@
 
 using namespace hsgm;
 using namespace hsgm::matcher;
+using hsgm::seam::difference;
 using hsgm::seam::Match;
 using hsgm::seam::StereoPair;
 using tiling::Patch;
@@ -190,7 +191,7 @@ Options attentive(Mode mode, Cost cost, int paths)
 
 TEST_CASE("garbage outside the declared support of a city's tiles changes nothing")
 {
-    const StereoPair pair = seam::render(seam::city({230, 300}));
+    const StereoPair pair = seam::render(seam::city({230, 300}, 5));
     check_garbage_outside(pair, Options{}, 16);
     check_garbage_outside(pair, census(Mode::hsgm, 16, false), 8);
     check_garbage_outside(pair, census(Mode::hsgm_paper, 8, false), 8);

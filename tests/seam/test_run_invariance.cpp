@@ -16,7 +16,7 @@ constexpr std::uint64_t kMiB = 1 << 20;
 
 const StereoPair& town()
 {
-    static const StereoPair pair = render(city({200, 280}));
+    static const StereoPair pair = render(city({200, 280}, 5));
     return pair;
 }
 
@@ -69,9 +69,10 @@ TEST_CASE("runs of the other modes give the same files for every tiling")
     using matcher::Mode;
     const TemporaryFolder folder;
     pipeline::Job job = write_pair(town(), Storage::uint16, folder.path());
-    for (const auto& [mode, cost] :
-         {std::pair{Mode::hsgm, Cost::hmi}, {Mode::hsgm_paper, Cost::hmi},
-          {Mode::sgm, Cost::census9x7}, {Mode::local, Cost::census5x5}}) {
+    for (const auto& [mode, cost] : {std::pair{Mode::hsgm, Cost::hmi},
+                                     {Mode::hsgm_paper, Cost::hmi},
+                                     {Mode::sgm, Cost::census9x7},
+                                     {Mode::local, Cost::census5x5}}) {
         INFO(name(mode));
         job.matcher.mode = mode;
         job.matcher.cost = cost;

@@ -6,6 +6,7 @@
 
 using namespace hsgm;
 using namespace hsgm::matcher;
+using hsgm::seam::difference;
 using hsgm::seam::Match;
 using hsgm::seam::StereoPair;
 using tiling::TileOrder;
@@ -42,7 +43,7 @@ void check_tilings(const StereoPair& pair, const Options& options,
 
 const StereoPair& small_city()
 {
-    static const StereoPair pair = seam::render(seam::city({150, 232}));
+    static const StereoPair pair = seam::render(seam::city({150, 232}, 5));
     return pair;
 }
 
@@ -60,7 +61,7 @@ Options of(Mode mode, Cost cost, int paths, int levels)
 
 TEST_CASE("the default match of a city is the same for every tiling")
 {
-    const StereoPair pair = seam::render(seam::city({300, 400}));
+    const StereoPair pair = seam::render(seam::city({300, 400}, 5));
     REQUIRE(pair.asked.min < 0);
     REQUIRE(pair.asked.max > 0);
     check_tilings(pair, Options{},
@@ -144,7 +145,6 @@ TEST_CASE("right images of another width and far ranges keep the bits")
         const StereoPair pair = seam::noise({100, 170}, cols, asked, 3);
         Options options;
         options.window_px = 32;
-        check_tilings(pair, options,
-                      {{50, TileOrder::shuffled}, {33, TileOrder::reversed}});
+        check_tilings(pair, options, {{50, TileOrder::shuffled}, {33, TileOrder::reversed}});
     }
 }
