@@ -14,7 +14,7 @@ namespace {
 synth::Scene high_city(tiling::Size size, std::uint64_t seed)
 {
     synth::Scene scene = city(size, seed);
-    scene.city->cell_px = 101;
+    scene.city->cell_px *= 1.25;
     scene.city->height_max_px = 48;
     return scene;
 }
