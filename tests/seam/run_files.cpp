@@ -83,9 +83,9 @@ std::vector<double> pixels_of(const std::filesystem::path& path)
 
 } // namespace
 
-TemporaryFolder::TemporaryFolder()
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent)
 {
-    std::string name = (std::filesystem::temp_directory_path() / "hsgm-seam-XXXXXX").string();
+    std::string name = (parent / "hsgm-seam-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
         throw std::runtime_error("no temporary folder " + name);
     }

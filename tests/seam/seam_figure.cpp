@@ -80,7 +80,7 @@ synth::Scene ramps(tiling::Size size, std::uint64_t seed)
     scene.terrain.offset_px = -10;
     scene.terrain.slope_x = 0.03;
     scene.terrain.slope_y = 0.02;
-    scene.terrain.waves = {{1.5, 160, 15, 10.0 * shift}};
+    scene.terrain.waves = {{1.5, 160, 15, double(10 * shift % 360)}};
     scene.terrain.texture.contrast = 0.08;
     // Rows of gables and pent roofs, each at its own angle.
     int n = 0;
