@@ -24,6 +24,17 @@ void check(const char* name, double value, bool allowed, const char* range)
     }
 }
 
+/// For GDAL, rows without a georeference go north. They go down, as in the picture, whose top
+/// is north for us; so the light is mirrored.
+double azimuth_for(GDALDatasetH height, double azimuth_deg)
+{
+    double transform[6];
+    if (GDALGetGeoTransform(height, transform) == CE_None) {
+        return azimuth_deg;
+    }
+    return azimuth_deg <= 180 ? 180 - azimuth_deg : 540 - azimuth_deg;
+}
+
 struct OptionsFree {
     void operator()(GDALDEMProcessingOptions* options) const
     {
@@ -32,14 +43,15 @@ struct OptionsFree {
 };
 using DemOptions = std::unique_ptr<GDALDEMProcessingOptions, OptionsFree>;
 
-DemOptions gdal_options(const HillshadeOptions& options, const CPLStringList& creation)
+DemOptions gdal_options(const HillshadeOptions& options, double azimuth_deg,
+                        const CPLStringList& creation)
 {
     CPLStringList list;
     const auto add = [&](const char* flag, double value) {
         list.AddString(flag);
         list.AddString(CPLSPrintf("%.17g", value));
     };
-    add("-az", options.azimuth_deg);
+    add("-az", azimuth_deg);
     add("-alt", options.altitude_deg);
     add("-z", options.z_factor);
     add("-s", options.scale);
@@ -72,7 +84,8 @@ void write_hillshade(const std::string& height_path, const std::string& output_p
         geotiff_options(output_path, PixelType::uint8, options.creation_options);
     PendingFile file(output_path);
     ErrorCollector errors;
-    const DemOptions dem_options = gdal_options(options, creation);
+    const DemOptions dem_options =
+        gdal_options(options, azimuth_for(height.get(), options.azimuth_deg), creation);
     Dataset shaded(GDALDEMProcessing(file.temporary_path().c_str(), height.get(), "hillshade",
                                      nullptr, dem_options.get(), nullptr));
     const bool made = shaded != nullptr;

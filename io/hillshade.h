@@ -7,7 +7,8 @@ namespace hsgm::io {
 
 /// How a shaded relief is lit.
 struct HillshadeOptions {
-    /// Where the light comes from, clockwise from north.
+    /// Where the light comes from, clockwise from north; north is the top of a raster
+    /// without georeference.
     double azimuth_deg = 315;
     /// Height of the light above the horizon, 0 to 90.
     double altitude_deg = 45;

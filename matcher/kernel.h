@@ -19,7 +19,7 @@ constexpr int kPriorMax = 4;
 /// The coarser level's normalised sums are capped at this before they become the prior.
 constexpr int kPriorCap = 16;
 /// A 7 x 7 neighbourhood whose tones span less than this counts as low texture.
-constexpr int kTextureGate = 6;
+constexpr int kTextureGate = 7;
 /// How much dearer than P2 a coarse disparity is that was never searched.
 constexpr int kUnsearchedMargin = 24;
 /// Right-view key of a right pixel that no left pixel met.
@@ -74,10 +74,11 @@ HSGM_HOST_DEVICE constexpr int confidence_of(int least, int rival)
     return c < 1 ? 1 : c;
 }
 
-/// Rounds a count of disparities up to what the vector code stores for a pixel.
+/// Rounds a count of disparities up to what the vector code stores for a pixel: full vectors
+/// of 32 bytes, but for the shortest ranges.
 constexpr int padded_count(int count)
 {
-    return (count + 15) / 16 * 16;
+    return count <= 16 ? 16 : (count + 31) / 32 * 32;
 }
 
 } // namespace hsgm::matcher

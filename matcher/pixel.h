@@ -23,7 +23,7 @@ struct Tone {
         if (!is_valid(pixel) || pixel <= lo) {
             return 0;
         }
-        return pixel >= hi ? 255 : static_cast<std::uint8_t>((pixel - lo) * 255 / (hi - lo));
+        return static_cast<std::uint8_t>(pixel >= hi ? 255 : (pixel - lo) * 255 / (hi - lo));
     }
     bool operator==(const Tone&) const = default;
 };

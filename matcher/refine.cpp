@@ -2,6 +2,7 @@
 
 #include "matcher/kernel.h"
 #include "matcher/matcher.h"
+#include "matcher/median.h"
 #include "matcher/reasons.h"
 
 #include <algorithm>
@@ -51,14 +52,22 @@ private:
     // a mismatch, otherwise it is occluded (Hirschmueller 2008, section 2.4).
     bool matches_elsewhere(int row, int col) const
     {
-        const int first = std::max(shape_.asked.min, col - (shape_.right.cols - 1));
-        const int last = std::min(shape_.asked.max, col);
-        for (int d = first; d <= last; ++d) {
-            if (agrees(row, col - d, d)) {
-                return true;
-            }
+        const int first = std::max(0, col - shape_.asked.max);
+        const int last = std::min(shape_.right.cols - 1, col - shape_.asked.min);
+        if (first > last) {
+            return false;
         }
-        return false;
+        // No branch inside, so that the compiler compares whole vectors. kNoKey stands for a
+        // disparity of asked.min + 65535, which agrees with none.
+        const std::uint32_t* keys = &input_.right_keys.at(row, first);
+        const auto width = static_cast<unsigned>(2 * tolerance_);
+        unsigned found = 0;
+        for (int i = 0; i <= last - first; ++i) {
+            const int right_winner = static_cast<int>(keys[i] & 0xFFFFU) + shape_.asked.min;
+            const int difference = right_winner - (col - first - i);
+            found |= static_cast<unsigned>(difference + tolerance_) <= width ? 1U : 0U;
+        }
+        return found != 0;
     }
 
     const RefineInput& input_;
@@ -99,6 +108,11 @@ std::int32_t median_at(const Patch<std::int32_t>& disparity,
                 values[static_cast<std::size_t>(count++)] = disparity.at(r, c);
             }
         }
+    }
+    if (count == 9) {
+        return median_of_nine<std::int32_t>({values[0], values[1], values[2], values[3],
+                                             values[4], values[5], values[6], values[7],
+                                             values[8]});
     }
     const auto middle = values.begin() + (count - 1) / 2;
     std::nth_element(values.begin(), middle, values.begin() + count);

@@ -90,7 +90,7 @@ RectifiedGeometry read_geometry(ConfigSection section)
 }
 
 OutputPaths output_paths(const std::filesystem::path& folder, const RectifiedGeometry& geometry,
-                         bool hillshade)
+                         bool hillshade, bool quicklooks)
 {
     OutputPaths outputs;
     outputs.disparity = folder / "disparity.tif";
@@ -104,6 +104,12 @@ OutputPaths output_paths(const std::filesystem::path& folder, const RectifiedGeo
     }
     if (geometry.focal_px) {
         outputs.depth = folder / "depth.tif";
+    }
+    if (quicklooks) {
+        outputs.disparity_picture = folder / "disparity.png";
+        if (!outputs.hillshade.empty()) {
+            outputs.hillshade_picture = folder / "hillshade.png";
+        }
     }
     return outputs;
 }
@@ -169,6 +175,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     job.geometry = read_geometry(geometry);
     const auto creation_options = output.texts("creation_options");
     const bool hillshade = output.flag("hillshade", true);
+    const bool quicklooks = output.flag("quicklooks", false);
     const bool has_left = pair.has("left");
     const bool has_right = pair.has("right");
     const bool has_folder = output.has("folder");
@@ -183,7 +190,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     job.left = pair.image("left");
     job.right = pair.image("right");
     configuration.folder = output.path("folder");
-    job.outputs = output_paths(configuration.folder, job.geometry, hillshade);
+    job.outputs = output_paths(configuration.folder, job.geometry, hillshade, quicklooks);
     job.outputs.creation_options = creation_options;
     configuration.used_yaml = document.effective_yaml();
     return configuration;

@@ -40,6 +40,8 @@ struct OutputPaths {
     std::filesystem::path height; ///< empty: not asked for; likewise below
     std::filesystem::path depth;
     std::filesystem::path hillshade;
+    std::filesystem::path disparity_picture; ///< PNG, as is hillshade_picture
+    std::filesystem::path hillshade_picture;
     std::vector<std::string> creation_options; ///< GDAL's KEY=VALUE, for every raster
 };
 

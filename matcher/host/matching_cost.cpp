@@ -1,14 +1,17 @@
 #include "matcher/host/matching_cost.h"
 
 #include "matcher/host/coarse_start.h"
+#include "matcher/host/hamming.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace hsgm::matcher::host {
 
 namespace {
+
+/// Whole vectors are read at the end of a row.
+constexpr std::size_t kReadBeyond = 16;
 
 // The right row in the order of rising disparity: entry j belongs to right column
 // last_col - j, so that pixel x with disparity volume.range.min + i reads entry
@@ -33,34 +36,21 @@ void fill_reversed(RightRow right, int image_cols, Value outside, Read read, Val
     }
 }
 
-// One pixel's costs from the right row's entries: `cost_of(entry)` where there is a valid
-// counterpart, half the maximum elsewhere, 255 in the padding.
-template <typename Entry, typename CostOf>
-void pixel_costs(const Entry* right, const std::uint8_t* valid, int count, int stride,
-                 std::uint8_t half, CostOf cost_of, std::uint8_t* costs)
-{
-    for (int i = 0; i < count; ++i) {
-        costs[i] = valid[i] != 0 ? cost_of(right[i]) : half;
-    }
-    std::fill(costs + count, costs + stride, std::uint8_t{255});
-}
-
-template <typename Entry, typename MakeCost>
-void cost_row(const LevelFeatures& features, const CostVolume& volume, int row,
-              std::uint8_t half, const Entry* right, const std::uint8_t* valid,
-              MakeCost make_cost, std::uint8_t* costs)
+void hmi_row(const LevelFeatures& features, const HmiTable& table, const CostVolume& volume,
+             int row, const std::uint8_t* right, const std::uint8_t* valid, std::uint8_t half,
+             std::uint8_t* costs)
 {
     const int count = volume.range.count();
     for (int i = 0; i < volume.rect.cols; ++i, costs += volume.stride) {
         const int col = volume.rect.col + i;
-        if (!is_valid(features.images->left.at(row, col))) {
-            std::fill_n(costs, count, half);
-            std::fill(costs + count, costs + volume.stride, std::uint8_t{255});
-            continue;
-        }
         const int first = volume.rect.cols - 1 - i;
-        pixel_costs(right + first, valid + first, count, volume.stride, half, make_cost(col),
-                    costs);
+        const bool left_valid = is_valid(features.images->left.at(row, col));
+        const std::uint8_t tone = features.left_tone.at(row, col);
+        for (int j = 0; j < count; ++j) {
+            costs[j] =
+                left_valid && valid[first + j] != 0 ? table(tone, right[first + j]) : half;
+        }
+        std::fill(costs + count, costs + volume.stride, std::uint8_t{255});
     }
 }
 
@@ -74,7 +64,7 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
     const auto length = static_cast<std::size_t>(right.count);
     const int image_cols = features.right_size.cols;
     const auto half = static_cast<std::uint8_t>(traits(cost).max / 2);
-    std::uint8_t* valid = workspace.right_valid.need(length);
+    std::uint8_t* valid = workspace.right_valid.need(length + kReadBeyond);
     fill_reversed<std::uint8_t>(
         right, image_cols, 0,
         [&](int col) { return std::uint8_t(is_valid(features.images->right.at(row, col))); },
@@ -84,41 +74,29 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
         fill_reversed<std::uint8_t>(
             right, image_cols, 0, [&](int col) { return features.right_tone.at(row, col); },
             tone);
-        cost_row(
-            features, volume, row, half, tone, valid,
-            [&](int col) {
-                const std::uint8_t* table =
-                    pair.hmi->cost.data() + 256u * features.left_tone.at(row, col);
-                return [table](std::uint8_t t) { return table[t]; };
-            },
-            costs);
+        hmi_row(features, *pair.hmi, volume, row, tone, valid, half, costs);
         return;
     }
-    std::uint64_t* words = workspace.right_census.need(length);
+    std::uint64_t* words = workspace.right_census.need(length + kReadBeyond);
     fill_reversed<std::uint64_t>(
         right, image_cols, 0, [&](int col) { return features.right_census.at(row, col); },
         words);
-    const auto census_rows = [&](auto scale) {
-        cost_row(
-            features, volume, row, half, words, valid,
-            [&](int col) {
-                const std::uint64_t left = features.left_census.at(row, col);
-                return [left, scale](std::uint64_t word) {
-                    return static_cast<std::uint8_t>(scale(std::popcount(left ^ word)));
-                };
-            },
-            costs);
-    };
-    switch (cost) {
-    case Cost::census5x5:
-        census_rows([](int bits) { return 2 * bits; });
-        break;
-    case Cost::census9x7:
-        census_rows([](int bits) { return std::min(bits, 59); });
-        break;
-    default:
-        census_rows([](int bits) { return bits; });
+    std::uint8_t* left_valid = workspace.left_valid.need(std::size_t(volume.rect.cols));
+    for (int i = 0; i < volume.rect.cols; ++i) {
+        left_valid[i] = is_valid(features.images->left.at(row, volume.rect.col + i));
     }
+    HammingRow words_row;
+    words_row.left = &features.left_census.at(row, volume.rect.col);
+    words_row.left_valid = left_valid;
+    words_row.right = words;
+    words_row.right_valid = valid;
+    words_row.cols = volume.rect.cols;
+    words_row.count = volume.range.count();
+    words_row.stride = volume.stride;
+    words_row.doubled = cost == Cost::census5x5;
+    words_row.most = static_cast<std::uint8_t>(traits(cost).max);
+    words_row.half = half;
+    hamming_costs(words_row, costs);
 }
 
 template <typename L>

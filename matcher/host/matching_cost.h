@@ -11,6 +11,7 @@ namespace hsgm::matcher::host {
 struct CostWorkspace {
     Buffer<std::uint64_t> right_census;
     Buffer<std::uint8_t> right_tone;
+    Buffer<std::uint8_t> left_valid;
     Buffer<std::uint8_t> right_valid;
     Buffer<std::uint8_t> prior;
 };

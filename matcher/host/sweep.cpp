@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 
@@ -23,6 +24,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Path costs of neighbouring pixels are stored one guard apart, so that d-1 of the first and
 // d+1 of the last disparity read the guard: infinitely dear.
 constexpr std::size_t kGuard = 16;
+
+// Rows that a direction along the row follows side by side.
+constexpr int kRowsAlong = 4;
 
 template <typename L>
 constexpr L kInfinite = std::numeric_limits<L>::max();
@@ -47,6 +51,28 @@ HWY_INLINE void add_to_sums(D, V path, std::uint16_t* HWY_RESTRICT sums, bool fi
     } else {
         const D d;
         hn::StoreU(first ? path : hn::SaturatedAdd(hn::LoadU(d, sums), path), d, sums);
+    }
+}
+
+// Folds a vector to 128 bits, pairs of bytes to 16-bit lanes, and asks for their minimum,
+// which is one instruction there.
+template <class D>
+HWY_INLINE hn::TFromD<D> least_lane(D d, hn::Vec<D> v)
+{
+    using L = hn::TFromD<D>;
+    if constexpr (sizeof(L) * hn::MaxLanes(d) > 16) {
+        const hn::Half<D> half;
+        return least_lane(half, hn::Min(hn::UpperHalf(half, v), hn::LowerHalf(half, v)));
+    } else {
+        const hn::RepartitionToWide<hn::CappedTag<std::uint8_t, 16>> d16;
+        if constexpr (sizeof(L) == 1) {
+            const auto pairs = hn::BitCast(d16, v);
+            const auto low = hn::And(pairs, hn::Set(d16, 0xFF));
+            return static_cast<L>(
+                hn::GetLane(hn::MinOfLanes(d16, hn::Min(low, hn::ShiftRight<8>(pairs)))));
+        } else {
+            return hn::GetLane(hn::MinOfLanes(d16, v));
+        }
     }
 }
 
@@ -94,7 +120,7 @@ struct Step {
                 add_to_sums(d, path, sums + i, first);
             }
         }
-        return reduce_min(minimum);
+        return least_lane(d, minimum);
     }
 
     // L = C, where a path begins.
@@ -111,28 +137,10 @@ struct Step {
                 add_to_sums(d, path, sums + i, first);
             }
         }
-        return reduce_min(minimum);
+        return least_lane(d, minimum);
     }
 
 private:
-    // Highway 1.0 reduces no 8-bit lanes: fold them by halves of a stored vector instead.
-    static HWY_INLINE L reduce_min(hn::Vec<D> v)
-    {
-        const D d;
-        HWY_ALIGN L lanes[kLanes];
-        hn::StoreU(v, d, lanes);
-        const hn::CappedTag<L, 16 / sizeof(L)> d128;
-        auto m = hn::LoadU(d128, lanes);
-        for (std::size_t i = hn::Lanes(d128); i < hn::Lanes(d); i += hn::Lanes(d128)) {
-            m = hn::Min(m, hn::LoadU(d128, lanes + i));
-        }
-        hn::StoreU(m, d128, lanes);
-        L least = lanes[0];
-        for (std::size_t i = 1; i < hn::Lanes(d128); ++i) {
-            least = std::min(least, lanes[i]);
-        }
-        return least;
-    }
 };
 
 template <typename L>
@@ -144,13 +152,14 @@ void keep_line(const SweepJob<L>& job, int row, int col, const L* path, L least)
     }
 }
 
-// Rows of path costs in flight: as many as the longest step of the direction, and one more.
+// Rows of path costs in flight: as many as the step of the direction, and one more; or those
+// that are followed side by side.
 template <typename L>
 class PathRows {
 public:
     PathRows(const SweepJob<L>& job, SweepWorkspace<L>& workspace)
         : region_(job.region), pitch_(std::size_t(job.cost.stride) + kGuard),
-          count_(std::abs(job.direction.row) + 1)
+          count_(job.direction.row == 0 ? kRowsAlong : std::abs(job.direction.row) + 1)
     {
         const std::size_t row = pitch_ * std::size_t(region_.cols) + kGuard;
         values_ = workspace.rows.need(row * std::size_t(count_));
@@ -183,6 +192,31 @@ private:
     L* least_ = nullptr;
 };
 
+// Everything that eq. 1 reads and writes for one pixel, and how far the next one lies.
+template <typename L>
+struct Cursor {
+    const L* before;
+    const L* before_least;
+    L* now;
+    L* least;
+    const std::uint8_t* costs;
+    std::uint16_t* sums; // null outside the core
+    const std::uint8_t* tone;
+    const std::uint8_t* before_tone;
+
+    HWY_INLINE void advance(std::ptrdiff_t pixels, std::ptrdiff_t pitch, std::ptrdiff_t stride)
+    {
+        before += pixels * pitch;
+        now += pixels * pitch;
+        before_least += pixels;
+        least += pixels;
+        costs += pixels * stride;
+        sums += sums != nullptr ? pixels * stride : 0;
+        tone += pixels;
+        before_tone += pixels;
+    }
+};
+
 template <int kLanes, typename L>
 class Sweep {
 public:
@@ -192,22 +226,99 @@ public:
     {
     }
 
-    // The pixels [col_begin, col_end) of one row, in path order.
+    // The pixels [col_begin, col_end) of one row of a direction that comes from another row:
+    // they do not depend on each other.
     void row(int row, int col_begin, int col_end)
     {
-        const int step = job_.direction.col < 0 ? -1 : 1;
-        const bool line_row = job_.lines != nullptr && job_.lines->holds_row(row);
-        for (int i = 0; i < col_end - col_begin; ++i) {
-            const int col = step > 0 ? col_begin + i : col_end - 1 - i;
-            pixel(row, col);
-            if (job_.lines != nullptr && job_.core.contains(row, col) &&
-                (line_row || job_.lines->holds_col(col))) {
-                keep_line(job_, row, col, rows_.at(row, col), rows_.least(row, col));
-            }
+        const tiling::Rect& region = job_.region;
+        const int dc = job_.direction.col;
+        int first = col_end;
+        int last = col_end;
+        if (row - job_.direction.row >= region.row &&
+            row - job_.direction.row < region.row_end()) {
+            first = std::clamp(region.col + std::max(dc, 0), col_begin, col_end);
+            last = std::clamp(region.col_end() + std::min(dc, 0), first, col_end);
+        }
+        entries(row, col_begin, first);
+        const bool core_row = row >= job_.core.row && row < job_.core.row_end();
+        const int core_first = core_row ? std::clamp(job_.core.col, first, last) : last;
+        const int core_last =
+            core_row ? std::clamp(job_.core.col_end(), core_first, last) : last;
+        run<1>(row, first, core_first, 1);
+        run<1>(row, core_first, core_last, 1);
+        run<1>(row, core_last, last, 1);
+        entries(row, last, col_end);
+        keep_lines(row, col_begin, col_end);
+    }
+
+    // kRows whole rows of a direction along the row. Each pixel waits for the one before it,
+    // so rows are followed side by side to keep the processor busy meanwhile.
+    template <int kRows>
+    void rows_along(int row)
+    {
+        const tiling::Rect& region = job_.region;
+        const int dc = job_.direction.col;
+        const int step = dc > 0 ? 1 : -1;
+        const int begin = dc > 0 ? region.col : region.col_end() - 1;
+        for (int k = 0; k < kRows; ++k) {
+            pixel(row + k, begin);
+        }
+        // The halo lies before the core only: [begin + step, turn) is halo, the rest core.
+        const int turn = dc > 0 ? std::max(job_.core.col, begin + 1)
+                                : std::min(job_.core.col_end() - 1, begin - 1);
+        const int end = dc > 0 ? region.col_end() : region.col - 1;
+        run<kRows>(row, begin + step, turn, step);
+        run<kRows>(row, turn, end, step);
+        for (int k = 0; k < kRows; ++k) {
+            keep_lines(row + k, region.col, region.col_end());
         }
     }
 
 private:
+    // Pixels whose predecessors all lie in the region, from `col` up to (not including)
+    // `end`; all in the core or none.
+    template <int kRows>
+    void run(int row, int col, int end, int step)
+    {
+        const int count = (end - col) * step;
+        if (count <= 0) {
+            return;
+        }
+        std::array<Cursor<L>, kRows> cursors;
+        for (int k = 0; k < kRows; ++k) {
+            cursors[std::size_t(k)] = cursor(row + k, col);
+        }
+        const auto pitch =
+            static_cast<std::ptrdiff_t>(job_.cost.stride) + static_cast<std::ptrdiff_t>(kGuard);
+        for (int i = 0; i < count; ++i) {
+            for (Cursor<L>& c : cursors) {
+                const int p2 = penalty(*c.tone, *c.before_tone);
+                *c.least = Step<kLanes, L>::follow(c.before, *c.before_least, c.costs,
+                                                   job_.cost.stride, job_.penalties.p1, p2,
+                                                   c.now, c.sums, job_.first);
+                c.advance(step, pitch, job_.cost.stride);
+            }
+        }
+    }
+
+    Cursor<L> cursor(int row, int col)
+    {
+        const int from_row = row - job_.direction.row;
+        const int from_col = col - job_.direction.col;
+        return {rows_.at(from_row, from_col), &rows_.least(from_row, from_col),
+                rows_.at(row, col),           &rows_.least(row, col),
+                job_.cost.at(row, col),       sums_at(row, col),
+                &job_.tone->at(row, col),     &job_.tone->at(from_row, from_col)};
+    }
+
+    // Pixels where paths enter the region.
+    void entries(int row, int col_begin, int col_end)
+    {
+        for (int col = col_begin; col < col_end; ++col) {
+            pixel(row, col);
+        }
+    }
+
     void pixel(int row, int col)
     {
         const int from_row = row - job_.direction.row;
@@ -216,20 +327,29 @@ private:
         std::uint16_t* sums = sums_at(row, col);
         L* now = rows_.at(row, col);
         L& least = rows_.least(row, col);
-        const int stride = job_.cost.stride;
-        if (job_.region.contains(from_row, from_col)) {
-            const int p2 = penalty(job_.tone->at(row, col), job_.tone->at(from_row, from_col));
-            least = Step<kLanes, L>::follow(rows_.at(from_row, from_col),
-                                            rows_.least(from_row, from_col), costs, stride,
-                                            job_.penalties.p1, p2, now, sums, job_.first);
-        } else if (job_.start != nullptr && job_.image.contains(from_row, from_col)) {
+        if (job_.start != nullptr && job_.image.contains(from_row, from_col)) {
             L before_least = 0;
             const L* before = coarse_costs(from_row, from_col, before_least);
             const int p2 = penalty(job_.tone->at(row, col), start_tone(from_row, from_col));
-            least = Step<kLanes, L>::follow(before, before_least, costs, stride,
+            least = Step<kLanes, L>::follow(before, before_least, costs, job_.cost.stride,
                                             job_.penalties.p1, p2, now, sums, job_.first);
         } else {
-            least = Step<kLanes, L>::begin(costs, stride, now, sums, job_.first);
+            least = Step<kLanes, L>::begin(costs, job_.cost.stride, now, sums, job_.first);
+        }
+    }
+
+    void keep_lines(int row, int col_begin, int col_end)
+    {
+        if (job_.lines == nullptr || row < job_.core.row || row >= job_.core.row_end()) {
+            return;
+        }
+        const bool line_row = job_.lines->holds_row(row);
+        const int begin = std::max(col_begin, job_.core.col);
+        const int end = std::min(col_end, job_.core.col_end());
+        for (int col = begin; col < end; ++col) {
+            if (line_row || job_.lines->holds_col(col)) {
+                keep_line(job_, row, col, rows_.at(row, col), rows_.least(row, col));
+            }
         }
     }
 
@@ -270,27 +390,35 @@ private:
 
 // Rows of a direction that stays in its row do not depend on each other.
 template <int kLanes, typename L>
+void sweep_along(const SweepJob<L>& job, SweepWorkspace<L>& workspace, int begin, int end)
+{
+    Sweep<kLanes, L> one(job, workspace);
+    int row = begin;
+    for (; row + kRowsAlong <= end; row += kRowsAlong) {
+        one.template rows_along<kRowsAlong>(row);
+    }
+    for (; row < end; ++row) {
+        one.template rows_along<1>(row);
+    }
+}
+
+template <int kLanes, typename L>
 void sweep_rows_apart(const SweepJob<L>& job, SweepWorkspace<L>& workspace)
 {
     if (!job.spread_over_threads) {
-        Sweep<kLanes, L> one(job, workspace);
-        for (int row = job.region.row; row < job.region.row_end(); ++row) {
-            one.row(row, job.region.col, job.region.col_end());
-        }
+        sweep_along<kLanes>(job, workspace, job.region.row, job.region.row_end());
         return;
     }
     tbb::parallel_for(tbb::blocked_range<int>(job.region.row, job.region.row_end(), 16),
                       [&](const tbb::blocked_range<int>& rows) {
                           SweepWorkspace<L> own;
-                          Sweep<kLanes, L> one(job, own);
-                          for (int row = rows.begin(); row < rows.end(); ++row) {
-                              one.row(row, job.region.col, job.region.col_end());
-                          }
+                          sweep_along<kLanes>(job, own, rows.begin(), rows.end());
                       });
 }
 
 // Rows one after the other; the pixels of a row only look at earlier rows, so a long row
-// may be shared out. Each part has its own start buffer.
+// may be shared out. (A level that is shared out is solved whole: no path starts from a
+// coarser one, so the parts do not meet in the start buffer.)
 template <int kLanes, typename L>
 void sweep_rows_in_turn(const SweepJob<L>& job, SweepWorkspace<L>& workspace)
 {
@@ -369,7 +497,9 @@ namespace hsgm::matcher {
 
 const char* vector_instructions()
 {
-    return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets());
+    // Of those compiled and supported here, the best has the lowest bit.
+    const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+    return hwy::TargetName(usable & -usable);
 }
 
 } // namespace hsgm::matcher

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "matcher/host/level_result.h"
+#include "matcher/median.h"
 
 #include <algorithm>
 #include <array>
@@ -20,8 +21,7 @@ int median_winner(const LevelResult<L>& coarse, int row, int col)
             values[n++] = coarse.winner(r, std::clamp(col + dc, 0, coarse.size.cols - 1));
         }
     }
-    std::nth_element(values.begin(), values.begin() + 4, values.end());
-    return values[4];
+    return median_of_nine(values);
 }
 
 /// The range of `level` widened to a multiple of 16 and shifted to lie inside `level`.

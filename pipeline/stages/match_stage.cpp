@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "io/hillshade.h"
+#include "io/quicklook.h"
 #include "io/raster_source.h"
 #include "io/scratch_folder.h"
 #include "pipeline/error.h"
@@ -123,6 +124,21 @@ MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
     return refine_and_write(first_pass, planned.shape, job, planned.geo);
 }
 
+// Pictures for people, made from the finished rasters.
+void write_pictures(const OutputPaths& outputs)
+{
+    const auto write = [](const std::filesystem::path& raster,
+                          const std::filesystem::path& picture, io::QuicklookStyle style) {
+        if (!picture.empty()) {
+            io::QuicklookOptions options;
+            options.style = style;
+            io::write_quicklook_png(raster.string(), picture.string(), options);
+        }
+    };
+    write(outputs.disparity, outputs.disparity_picture, io::QuicklookStyle::disparity);
+    write(outputs.hillshade, outputs.hillshade_picture, io::QuicklookStyle::hillshade);
+}
+
 } // namespace
 
 PlannedJob plan_job(const Job& job)
@@ -152,9 +168,12 @@ MatchSummary run_job(const PlannedJob& planned, const Progress& progress)
     tbb::task_arena arena(planned.budget.threads);
     const MatchSummary summary = arena.execute([&] { return run_in_arena(planned, progress); });
     if (!planned.job.outputs.hillshade.empty()) {
+        io::HillshadeOptions options;
+        options.creation_options = planned.job.outputs.creation_options;
         io::write_hillshade(planned.job.outputs.height.string(),
-                            planned.job.outputs.hillshade.string());
+                            planned.job.outputs.hillshade.string(), options);
     }
+    write_pictures(planned.job.outputs);
     return summary;
 }
 

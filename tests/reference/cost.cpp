@@ -111,7 +111,7 @@ bool is_flat(const LevelPair& pair, int row, int col)
             }
         }
     }
-    return largest - least < 6;
+    return largest - least < 7;
 }
 
 PixelCosts prior_of(const PixelCosts& coarse_sums, int paths)

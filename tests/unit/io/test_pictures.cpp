@@ -86,6 +86,25 @@ TEST_CASE("a slope that faces the light is brighter than one that turns away")
     CHECK_THROWS_AS(write_hillshade(folder / "absent.tif", folder / "x.tif"), InputError);
 }
 
+TEST_CASE("the top of a raster without georeference is north to the light")
+{
+    TemporaryFolder folder;
+    std::vector<double> heights; // rising downwards: the slope faces the top
+    for (int r = 0; r < 6; ++r) {
+        heights.insert(heights.end(), 5, 0.5 * r);
+    }
+    make_raster(folder / "slope.tif", GDT_Float32, {6, 5}, {heights});
+    HillshadeOptions options;
+    for (const double azimuth_deg : {0.0, 315.0, 45.0, 360.0}) {
+        options.azimuth_deg = azimuth_deg;
+        write_hillshade(folder / "slope.tif", folder / "lit.tif", options);
+        CHECK(read_band(folder / "lit.tif", 1)[12] > 200);
+    }
+    options.azimuth_deg = 180;
+    write_hillshade(folder / "slope.tif", folder / "dark.tif", options);
+    CHECK(read_band(folder / "dark.tif", 1)[12] < 100);
+}
+
 TEST_CASE("a quick look averages valid pixels only and keeps empty areas black")
 {
     TemporaryFolder folder;

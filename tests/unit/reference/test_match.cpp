@@ -31,6 +31,7 @@ TEST_CASE("the twin's sub-pixel offset follows its formula")
     CHECK(sub_pixel_q8(sums_of({10, 0, 15}), 1) == 256 - 58); // x = 170, 72420 >> 10 = 70
     CHECK(sub_pixel_q8(sums_of({15, 0, 10}), 1) == 256 + 58);
     CHECK(sub_pixel_q8(sums_of({15, 0, 0}), 1) == 256 + 128);
+    CHECK(sub_pixel_q8(sums_of({1, 0, 300}), 1) == 256 - 127); // x = 0, kept from 128
     CHECK(sub_pixel_q8(sums_of({0, 0, 0}), 1) == 256);
     CHECK(sub_pixel_q8(sums_of({0, 10, 15}), 0) == 0); // no neighbour below
     CHECK(sub_pixel_q8(sums_of({15, 10, 0}), 2) == 512);

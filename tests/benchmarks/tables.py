@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Prints the quality and memory tables of docs/benchmarks.md as Markdown.
+
+    tests/benchmarks/tables.py [--hsgm build/hsgm] [--data ../shared/data] [seams|middlebury|peers|memory ...]
+
+Needs the program and, but for `seams` and `memory`, the data folder of real pairs. Quality
+does not depend on the machine; memory hardly does.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+RAW = ["matcher.left_right_px=off", "matcher.median=1"]
+PATHS = {}
+
+
+def run(*arguments):
+    done = subprocess.run([PATHS["hsgm"], "--log-level", "error", *arguments], check=True,
+                          stdout=subprocess.PIPE)
+    return done.stdout
+
+
+def match(left, right, disparity, settings, output):
+    options = [part for key in settings for part in ("--set", key)]
+    run("match", left, right, "-o", output, f"--disparity={disparity}", *options)
+
+
+def bad(scored, threshold, among="bad_percent"):
+    return next(row[among] for row in scored["bad"] if row["threshold_px"] == threshold)
+
+
+def score(test, truth, *options):
+    return json.loads(run("evaluate", "disparity", test, truth, "--json", *options))
+
+
+def row(*cells):
+    print("| " + " | ".join(str(cell) for cell in cells) + " |")
+
+
+def header(*cells):
+    row(*cells)
+    row(*["---"] * len(cells))
+
+
+MODES = [
+    ("sgm, whole image", ["matcher.mode=sgm"]),
+    ("local windows, no overlap", ["matcher.mode=local", "matcher.halo=0"]),
+    ("local windows, overlap 8", ["matcher.mode=local", "matcher.halo=8"]),
+    ("local windows, overlap 16", ["matcher.mode=local", "matcher.halo=16"]),
+    ("hsgm-paper (eq. 2 and 3)", ["matcher.mode=hsgm-paper"]),
+    ("hsgm without halo", ["matcher.halo=0"]),
+    ("hsgm", []),
+]
+
+
+def seams(folder):
+    print("### Seams at window borders (figure 5 of the paper as a table)\n")
+    header("scene", "mode", "% bad > 1 px", "jump ratio at borders", "95 % interval")
+    for scene, disparity in (("city", "-8,56"), ("ramps", "-16,47"), ("planes", "-16,63")):
+        made = os.path.join(folder, scene)
+        run("synth", os.path.join(PATHS["configs"], f"scene-{scene}.yaml"), "-o", made)
+        truth = os.path.join(made, "truth_left.tif")
+        mask = os.path.join(made, "visible_left.tif")
+        for name, settings in MODES:
+            test = os.path.join(folder, "seam.tif")
+            match(os.path.join(made, "left.tif"), os.path.join(made, "right.tif"), disparity,
+                  settings + RAW, test)
+            scored = score(test, truth, "--mask", mask)
+            seam = json.loads(run("evaluate", "seams", test, "--truth", truth, "--mask", mask,
+                                  "--window", "64", "--json"))
+            grid = seam["window_64"]
+            row(scene, name, f"{bad(scored, 1):.2f}", f"{grid['ratio']:.3f}",
+                f"{grid['ratio_low']:.2f} to {grid['ratio_high']:.2f}")
+    print()
+
+
+def third(scene):
+    folder = f"middlebury_2005_2006_third/{scene}"
+    return (scene, folder, "0,79", "disp_left_x3.png",
+            ["--scale", "3", "--truth-right", "disp_right_x3.png"])
+
+
+CLASSICS = [
+    ("Tsukuba", "middlebury_tsukuba", "0,15", "disp_left_x16.png",
+     ["--scale", "16", "--mask", "mask_nonocc.png"]),
+    ("Cones", "middlebury_cones", "0,63", "disp_left_x4.png",
+     ["--scale", "4", "--mask", "mask_nonocc.png"]),
+    third("Books"), third("Bowling2"), third("Lampshade1"), third("Rocks1"), third("Wood2"),
+]
+OTHERS = [
+    ("Dolls", "middlebury_2005_2006_full/Dolls", "0,255", "disp_left_x1.png",
+     ["--truth-right", "disp_right_x1.png"]),
+    ("Adirondack", "middlebury_2014_adirondack_q", "0,63", "disp_left_x1.png",
+     ["--mask", "mask_nonocc.png"]),
+    ("ETH3D playground", "eth3d_playground", "0,63", "disp_left.pfm",
+     ["--nonoccluded", "zbuffer"]),
+    ("Fountain", "fountain23", "0,127", "disp_left_x1.png", ["--nonoccluded", "zbuffer"]),
+]
+# These are scored at 3 px: their truth is lidar of another date.
+COARSE = [
+    ("Dublin", "aerial_dublin_lower", "0,127", "disp_left_x256.png",
+     ["--scale", "256", "--nonoccluded", "zbuffer"]),
+    ("US3D JAX_079", "sat_us3d_JAX_079_006_007", "-64,63", "disp_left.tif",
+     ["--truth-nodata", "-999", "--nonoccluded", "zbuffer"]),
+]
+
+
+def readable(truth, folder):
+    """GDAL reads no PFM, but its rows (float32, bottom to top) through a virtual raster."""
+    if not truth.endswith(".pfm"):
+        return truth
+    with open(truth, "rb") as pfm:
+        header = [pfm.readline() for _ in range(3)]
+    cols, rows = (int(n) for n in header[1].split())
+    order = "LSB" if float(header[2]) < 0 else "MSB"
+    first = sum(len(line) for line in header) + (rows - 1) * cols * 4
+    vrt = os.path.join(folder, "truth.vrt")
+    with open(vrt, "w", encoding="ascii") as file:
+        file.write(
+            f'<VRTDataset rasterXSize="{cols}" rasterYSize="{rows}">'
+            '<VRTRasterBand dataType="Float32" band="1" subClass="VRTRawRasterBand">'
+            f'<SourceFilename relativeToVRT="0">{os.path.abspath(truth)}</SourceFilename>'
+            f"<ImageOffset>{first}</ImageOffset><PixelOffset>4</PixelOffset>"
+            f"<LineOffset>{-4 * cols}</LineOffset><ByteOrder>{order}</ByteOrder>"
+            "</VRTRasterBand></VRTDataset>")
+    return vrt
+
+
+def score_scene(scene, settings, folder, threshold=1):
+    _, place, disparity, truth, options = scene
+    data = os.path.join(PATHS["data"], place)
+    here = [os.path.join(data, o) if o.endswith(".png") else o for o in options]
+    test = os.path.join(folder, "scene.tif")
+    images = [f for f in os.listdir(data) if f.startswith(("left", "right."))]
+    left, right = (os.path.join(data, next(f for f in sorted(images) if f.startswith(side)))
+                   for side in ("left", "right"))
+    match(left, right, disparity, settings, test)
+    return score(test, readable(os.path.join(data, truth), folder), "--thresholds", str(threshold), *here)
+
+
+def middlebury(folder):
+    print("### Table 1 of the paper: % bad > 1 px, non-occluded, missing counted as bad\n")
+    columns = [("sgm", ["matcher.mode=sgm"]), ("hsgm-paper, hmi", ["matcher.mode=hsgm-paper", "matcher.cost=hmi"]),
+               ("hsgm-paper, census7x7", ["matcher.mode=hsgm-paper"]), ("hsgm", [])]
+    for title, extra in (("raw", RAW), ("with left-right check and median", [])):
+        header(title, *[scene[0] for scene in CLASSICS], "mean")
+        for name, settings in columns:
+            values = [bad(score_scene(s, settings + extra, folder), 1) for s in CLASSICS]
+            row(name, *[f"{v:.2f}" for v in values], f"{sum(values) / len(values):.2f}")
+        print()
+
+
+def peers(folder):
+    print("### Every scene, default options\n")
+    header("scene", "threshold", "raw % bad", "checked % bad", "density %", "% bad among valid")
+    for threshold, scenes in ((1, CLASSICS + OTHERS), (3, COARSE)):
+        for scene in scenes:
+            raw = score_scene(scene, RAW, folder, threshold)
+            checked = score_scene(scene, [], folder, threshold)
+            row(scene[0], f"{threshold} px", f"{bad(raw, threshold):.2f}",
+                f"{bad(checked, threshold):.2f}", f"{checked['density_percent']:.1f}",
+                f"{bad(checked, threshold, 'bad_answered_percent'):.2f}")
+    print()
+
+
+def peak_mebibytes(arguments):
+    # A shell of its own, since a parent's maximum is over all children it ever had.
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+    done = subprocess.run([sys.executable, "-c", code, PATHS["hsgm"], "--log-level", "error",
+                           *arguments], check=True, stdout=subprocess.PIPE)
+    return int(done.stdout) / 1024
+
+
+def memory(folder):
+    print("### Peak memory, whole process\n")
+    header("pair", "mode", "tile", "peak MiB", "share of sgm")
+    for size, disparity in (("1024", "0,127"), ("2048", "0,127"), ("2048", "0,255")):
+        made = os.path.join(folder, "memory")
+        run("synth", os.path.join(PATHS["configs"], "scene-city.yaml"), "-o", made,
+            "--set", f"size=[{size}, {size}]")
+        whole = None
+        for name, tile in (("sgm", "0"), ("hsgm", "0"), ("hsgm", "1024"), ("hsgm", "256")):
+            peak = peak_mebibytes(
+                ["match", os.path.join(made, "left.tif"), os.path.join(made, "right.tif"), "-o",
+                 os.path.join(folder, "memory.tif"), f"--disparity={disparity}", "--tile-size",
+                 tile, "--threads", "1", "--set", f"matcher.mode={name}"])
+            whole = whole or peak
+            row(f"{size} x {size}, {disparity}", name, "untiled" if tile == "0" else tile,
+                f"{peak:.0f}", f"{100 * peak / whole:.0f} %")
+    print()
+
+
+TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "memory": memory}
+
+
+def main():
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], default=list(TABLES))
+    parser.add_argument("--hsgm", default=os.path.join(root, "build", "hsgm"))
+    parser.add_argument("--data", default=os.environ.get(
+        "HSGM_DATA_DIR", os.path.join(root, "..", "shared", "data")))
+    arguments = parser.parse_args()
+    PATHS.update(hsgm=arguments.hsgm, data=arguments.data,
+                 configs=os.path.join(root, "configs"))
+    with tempfile.TemporaryDirectory() as folder:
+        for table in arguments.tables:
+            TABLES[table](folder)
+
+
+if __name__ == "__main__":
+    main()
