@@ -37,7 +37,7 @@ public:
         if (!free_.try_pop(worker)) {
             throw std::logic_error("tile graph: more matching slots than workers");
         }
-        auto finished = std::make_shared<Finished>(task.index, worker->match(task));
+        auto finished = std::make_shared<Finished>(Finished{task.index, worker->match(task)});
         free_.push(worker);
         return finished;
     }

@@ -1,0 +1,144 @@
+// One step of a path in vectors (eq. 1), compiled once for every instruction set: the guard
+// below is Highway's, which lets each of its targets include this file again.
+#if defined(HSGM_MATCHER_HOST_SWEEP_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HSGM_MATCHER_HOST_SWEEP_STEP_INL_H_
+#undef HSGM_MATCHER_HOST_SWEEP_STEP_INL_H_
+#else
+#define HSGM_MATCHER_HOST_SWEEP_STEP_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace hsgm::matcher::host::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Path costs of neighbouring pixels are stored one guard apart, so that d-1 of the first and
+// d+1 of the last disparity read the guard: infinitely dear.
+constexpr std::size_t kGuard = 16;
+
+template <typename L>
+constexpr L kInfinite = std::numeric_limits<L>::max();
+
+// Adds the L of one vector to the 16-bit sums.
+template <class D, class V>
+HWY_INLINE void add_to_sums(D, V path, std::uint16_t* HWY_RESTRICT sums, bool first)
+{
+    using L = hn::TFromD<D>;
+    if constexpr (sizeof(L) == 1) {
+        const hn::Rebind<std::uint16_t, hn::Half<D>> d16;
+        const auto low = hn::PromoteTo(d16, hn::LowerHalf(hn::Half<D>(), path));
+        const auto high = hn::PromoteTo(d16, hn::UpperHalf(hn::Half<D>(), path));
+        const std::size_t half = hn::Lanes(d16);
+        if (first) {
+            hn::StoreU(low, d16, sums);
+            hn::StoreU(high, d16, sums + half);
+        } else {
+            hn::StoreU(hn::Add(hn::LoadU(d16, sums), low), d16, sums);
+            hn::StoreU(hn::Add(hn::LoadU(d16, sums + half), high), d16, sums + half);
+        }
+    } else {
+        const D d;
+        hn::StoreU(first ? path : hn::SaturatedAdd(hn::LoadU(d, sums), path), d, sums);
+    }
+}
+
+// Folds a vector to 128 bits, pairs of bytes to 16-bit lanes, and asks for their minimum,
+// which is one instruction there.
+template <class D>
+HWY_INLINE hn::TFromD<D> least_lane(D d, hn::Vec<D> v)
+{
+    using L = hn::TFromD<D>;
+    if constexpr (sizeof(L) * hn::MaxLanes(d) > 16) {
+        const hn::Half<D> half;
+        return least_lane(half, hn::Min(hn::UpperHalf(half, v), hn::LowerHalf(half, v)));
+    } else {
+        const hn::RepartitionToWide<hn::CappedTag<std::uint8_t, 16>> d16;
+        if constexpr (sizeof(L) == 1) {
+            const auto pairs = hn::BitCast(d16, v);
+            const auto low = hn::And(pairs, hn::Set(d16, 0xFF));
+            return static_cast<L>(
+                hn::GetLane(hn::MinOfLanes(d16, hn::Min(low, hn::ShiftRight<8>(pairs)))));
+        } else {
+            return hn::GetLane(hn::MinOfLanes(d16, v));
+        }
+    }
+}
+
+template <class D>
+HWY_INLINE auto load_costs(D d, const std::uint8_t* costs)
+{
+    using L = hn::TFromD<D>;
+    if constexpr (sizeof(L) == 1) {
+        return hn::LoadU(d, costs);
+    } else {
+        // The padding 255 has to become infinite in 16 bits too.
+        const hn::Rebind<std::uint8_t, D> d8;
+        const auto wide = hn::PromoteTo(d, hn::LoadU(d8, costs));
+        return hn::IfThenElse(hn::Eq(wide, hn::Set(d, L{255})), hn::Set(d, kInfinite<L>), wide);
+    }
+}
+
+template <int kLanes, typename L>
+struct Step {
+    using D = hn::CappedTag<L, kLanes>;
+
+    // Eq. 1 for one pixel. `before` are the predecessor's path costs, with readable guards
+    // on both sides; returns the least new cost.
+    static HWY_INLINE L follow(const L* HWY_RESTRICT before, L before_least,
+                               const std::uint8_t* HWY_RESTRICT costs, int stride, int p1,
+                               int p2, L* HWY_RESTRICT now, std::uint16_t* HWY_RESTRICT sums,
+                               bool first)
+    {
+        const D d;
+        const auto penalty1 = hn::Set(d, static_cast<L>(p1));
+        const auto least = hn::Set(d, before_least);
+        const auto jump =
+            hn::Set(d, static_cast<L>(std::min<int>(before_least + p2, kInfinite<L>)));
+        auto minimum = hn::Set(d, kInfinite<L>);
+        for (int i = 0; i < stride; i += static_cast<int>(hn::Lanes(d))) {
+            const auto same = hn::LoadU(d, before + i);
+            const auto aside =
+                hn::Min(hn::LoadU(d, before + i - 1), hn::LoadU(d, before + i + 1));
+            const auto best = hn::Min(hn::Min(same, jump), hn::SaturatedAdd(aside, penalty1));
+            const auto path =
+                hn::SaturatedAdd(load_costs(d, costs + i), hn::SaturatedSub(best, least));
+            hn::StoreU(path, d, now + i);
+            minimum = hn::Min(minimum, path);
+            if (sums != nullptr) {
+                add_to_sums(d, path, sums + i, first);
+            }
+        }
+        return least_lane(d, minimum);
+    }
+
+    // L = C, where a path begins.
+    static HWY_INLINE L begin(const std::uint8_t* HWY_RESTRICT costs, int stride,
+                              L* HWY_RESTRICT now, std::uint16_t* HWY_RESTRICT sums, bool first)
+    {
+        const D d;
+        auto minimum = hn::Set(d, kInfinite<L>);
+        for (int i = 0; i < stride; i += static_cast<int>(hn::Lanes(d))) {
+            const auto path = load_costs(d, costs + i);
+            hn::StoreU(path, d, now + i);
+            minimum = hn::Min(minimum, path);
+            if (sums != nullptr) {
+                add_to_sums(d, path, sums + i, first);
+            }
+        }
+        return least_lane(d, minimum);
+    }
+
+private:
+};
+
+} // namespace hsgm::matcher::host::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
