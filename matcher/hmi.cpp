@@ -33,7 +33,7 @@ std::array<double, 7> gaussian()
 }
 
 // Smooths `count` values that lie `step` apart, replicating the ends.
-void smooth_line(double* values, int step, int count)
+void smooth_line(double* values, std::ptrdiff_t step, int count)
 {
     static const std::array<double, 7> taps = gaussian();
     std::vector<double> in(std::size_t{kTones});
@@ -55,7 +55,7 @@ void smooth_plane(std::vector<double>& plane)
         smooth_line(plane.data() + k, kTones, kTones);
     }
     for (int i = 0; i < kTones; ++i) {
-        smooth_line(plane.data() + i * kTones, 1, kTones);
+        smooth_line(plane.data() + std::ptrdiff_t{kTones} * i, 1, kTones);
     }
 }
 

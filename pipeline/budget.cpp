@@ -22,7 +22,7 @@ constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 /// The program, its libraries, and what the allocator holds back.
 constexpr std::int64_t kBaseBytes = 96 * kMiB;
 /// Two sources: a strip of doubles and of pixels each, and GDAL's decoded blocks.
-constexpr std::int64_t kStripBytes = 2 * (16 + 4 + 8) * kMiB;
+constexpr std::int64_t kStripBytes = 2 * (16 * kMiB + 4 * kMiB + 8 * kMiB);
 /// Larger tiles repeat less work at their borders, but gain little beyond this.
 constexpr std::array<int, 8> kTileSizes{1024, 768, 512, 384, 256, 192, 128, 64};
 

@@ -35,9 +35,9 @@ void spread_disparities(const T* values, tiling::DisparityRange coarse,
     T* even = out + odd_start;
     const T* v = scratch + odd_start;
     const int pairs = (fine.count() - odd_start + 1) / 2;
-    for (int j = 0; j < pairs; ++j) {
-        even[2 * j] = v[j];
-        even[2 * j + 1] = static_cast<T>(between(v[j], v[j + 1]));
+    for (int j = 0; j < pairs; ++j, even += 2) {
+        even[0] = v[j];
+        even[1] = static_cast<T>(between(v[j], v[j + 1]));
     }
 }
 
