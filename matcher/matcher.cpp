@@ -1,7 +1,6 @@
 #include "matcher/matcher.h"
 
 #include "matcher/host/levels.h"
-#include "matcher/kernel.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -25,18 +24,12 @@ tiling::Patch<std::uint16_t> copy(tiling::ImageView<const std::uint16_t> image)
     return patch;
 }
 
-// Path costs fit 8 bits exactly while no sum in eq. 1 passes 255.
-bool fits_8_bits(const Options& options)
-{
-    return traits(options.cost).max + (options.prior ? kPriorMax : 0) + options.p2 <= 255;
-}
-
 // One piece of work for whichever width the penalties need.
 template <typename Work>
 auto with_levels(const PairTraits& pair, const Options& options, const LevelPlan& plan,
                  Work work)
 {
-    if (fits_8_bits(options)) {
+    if (options.fits_8_bits()) {
         return work(host::Levels<std::uint8_t>(pair, options, plan));
     }
     return work(host::Levels<std::uint16_t>(pair, options, plan));
@@ -79,7 +72,7 @@ TileMatch Matcher::match_tile(const tiling::Rect& core, std::span<const LevelIma
                               const CoarseSolution& coarse) const
 {
     const auto needed = support(core);
-    if (fits_8_bits(options_)) {
+    if (options_.fits_8_bits()) {
         return host::Levels<std::uint8_t>(pair_, options_, plan_)
             .solve_tile(core, images, needed, coarse, workers_->narrow);
     }

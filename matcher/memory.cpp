@@ -19,8 +19,7 @@ constexpr std::int64_t kKeyBytes = 4;
 
 std::int64_t path_bytes(const Options& options)
 {
-    const int prior = options.prior ? kPriorMax : 0;
-    return traits(options.cost).max + prior + options.p2 <= 255 ? 1 : 2;
+    return options.fits_8_bits() ? 1 : 2;
 }
 
 // What a level keeps for the next finer one: winners, prior and start lines.

@@ -1,5 +1,7 @@
 #include "matcher/options.h"
 
+#include "matcher/kernel.h"
+
 #include <array>
 #include <stdexcept>
 #include <utility>
@@ -87,6 +89,11 @@ Options Options::resolved() const
         o.levels = 1;
     }
     return o;
+}
+
+bool Options::fits_8_bits() const
+{
+    return traits(cost).max + (prior ? kPriorMax : 0) + p2 <= 255;
 }
 
 std::string_view name(Mode mode)

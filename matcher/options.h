@@ -39,6 +39,9 @@ struct Options {
     /// `hsgm_paper` has neither halo, prior nor pruning; `sgm` and `local` have one level.
     Options resolved() const;
 
+    /// Whether path costs fit 8 bits exactly: no sum of eq. 1 passes 255. Else they take 16.
+    bool fits_8_bits() const;
+
     bool operator==(const Options&) const = default;
 };
 
