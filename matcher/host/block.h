@@ -3,9 +3,11 @@
 #include "matcher/host/level_features.h"
 #include "matcher/host/level_result.h"
 #include "matcher/host/matching_cost.h"
+#include "matcher/host/penalty_maps.h"
 #include "matcher/host/sums.h"
 #include "matcher/host/sweep.h"
 #include "matcher/host/tile_output.h"
+#include "matcher/host/window_paths.h"
 
 #include <optional>
 
@@ -20,6 +22,7 @@ struct LevelJob {
     tiling::DisparityRange range;                              ///< of the level
     const LevelResult<L>* coarser = nullptr;                   ///< null at the coarsest level
     const tiling::Patch<std::uint8_t>* coarser_tone = nullptr; ///< for eq. 3
+    const PenaltyMaps* penalties = nullptr; ///< where `solves_by_passes`
     bool whole = false;      ///< one block: the image; its work is spread over the threads
     bool keep_lines = false; ///< a finer level starts its paths here
     bool keep_prior = false; ///< a finer level reads its prior here
@@ -34,7 +37,16 @@ struct BlockWorkspace {
     OutputWorkspace output;
     CostWorkspace cost_rows;
     SweepWorkspace<L> sweep;
+    WindowWorkspace window;
 };
+
+/// Whether windows are solved in two passes over 8-bit costs (window_paths.h); the others,
+/// and levels solved whole, one direction after the other (sweep.h).
+template <typename L>
+bool solves_by_passes(const Options& options)
+{
+    return sizeof(L) == 1 && options.mode != Mode::hsgm_paper;
+}
 
 /// Costs, paths and sums of one block. `lines` receives the path costs that the finer level
 /// starts from (job.keep_lines).

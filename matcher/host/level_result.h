@@ -56,6 +56,13 @@ public:
     bool holds_row(int row) const { return lines_.holds(row, direction_.row); }
     bool holds_col(int col) const { return lines_.holds(col, direction_.col); }
 
+    /// The columns of the core for which holds_col is true: from first_col on, one a pitch.
+    int first_col() const
+    {
+        return direction_.col == 0 ? core_.col_end() : lines_.first(core_.col, direction_.col);
+    }
+    int col_pitch() const { return lines_.pitch(); }
+
     std::int64_t bytes() const { return static_cast<std::int64_t>(values_.size() * sizeof(L)); }
     /// The vector of a pixel for which holds_row or holds_col is true.
     L* at(int row, int col) { return values_.data() + index(row, col); }

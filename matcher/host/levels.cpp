@@ -180,6 +180,11 @@ TileMatch Levels<L>::solve_tile(const Rect& core, std::span<const LevelImages> i
         LevelJob<L> level_job = job(level, features);
         level_job.coarser = coarser;
         level_job.coarser_tone = coarser_tone;
+        PenaltyMaps penalties;
+        if (solves_by_passes<L>(options_)) {
+            penalties = PenaltyMaps(features.left_tone, support[k].aggregation, options_);
+            level_job.penalties = &penalties;
+        }
         if (level == 0) {
             return solve_windows_to_tile(level_job, support[k].windows, core, workspaces);
         }
