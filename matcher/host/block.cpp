@@ -168,12 +168,11 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
 
 template <typename L>
 void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result,
-                BlockWorkspace<L>& workspace)
+                tiling::Patch<std::int16_t>& level_winners, BlockWorkspace<L>& workspace)
 {
     result.core = sums.core;
     result.range = sums.range;
     result.stride = sums.stride;
-    result.winner = tiling::Image<std::int16_t>(sums.core.size());
     if (job.keep_prior) {
         result.prior.resize(std::size_t(sums.core.area()) * std::size_t(sums.stride));
     }
@@ -186,7 +185,7 @@ void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& r
             const SumsRow sums_row{sums.at(row, sums.core.col), cols, sums.stride,
                                    sums.range.count()};
             find_winners(sums_row, winners);
-            std::int16_t* to = result.winner.row(row - sums.core.row);
+            std::int16_t* to = &level_winners.at(row, sums.core.col);
             for (int i = 0; i < cols; ++i) {
                 to[i] = static_cast<std::int16_t>(sums.range.min + winners[i].index);
             }
@@ -205,8 +204,10 @@ template BlockSums solve_block(const LevelJob<std::uint16_t>&, const Rect&,
                                tiling::DisparityRange, std::vector<LineStore<std::uint16_t>>&,
                                BlockWorkspace<std::uint16_t>&);
 template void keep_block(const LevelJob<std::uint8_t>&, const BlockSums&,
-                         BlockResult<std::uint8_t>&, BlockWorkspace<std::uint8_t>&);
+                         BlockResult<std::uint8_t>&, tiling::Patch<std::int16_t>&,
+                         BlockWorkspace<std::uint8_t>&);
 template void keep_block(const LevelJob<std::uint16_t>&, const BlockSums&,
-                         BlockResult<std::uint16_t>&, BlockWorkspace<std::uint16_t>&);
+                         BlockResult<std::uint16_t>&, tiling::Patch<std::int16_t>&,
+                         BlockWorkspace<std::uint16_t>&);
 
 } // namespace hsgm::matcher::host

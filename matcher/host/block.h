@@ -55,9 +55,9 @@ BlockSums solve_block(const LevelJob<L>& job, const tiling::Rect& core,
                       tiling::DisparityRange range, std::vector<LineStore<L>>& lines,
                       BlockWorkspace<L>& workspace);
 
-/// Winners and prior of a solved block, as the finer level reads them.
+/// Prior of a solved block, as the finer level reads it, and its part of the level's winners.
 template <typename L>
 void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result,
-                BlockWorkspace<L>& workspace);
+                tiling::Patch<std::int16_t>& level_winners, BlockWorkspace<L>& workspace);
 
 } // namespace hsgm::matcher::host

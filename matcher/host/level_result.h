@@ -99,7 +99,6 @@ struct BlockResult {
     tiling::Rect core;
     tiling::DisparityRange range; ///< the disparities searched
     int stride = 0;               ///< elements kept for a pixel: padded_count(range.count())
-    tiling::Image<std::int16_t> winner;
     std::vector<std::uint8_t> prior; ///< q of every core pixel; empty where nobody reads it
     std::vector<LineStore<L>> lines; ///< one for each direction
 
@@ -125,6 +124,8 @@ struct LevelResult {
     tiling::Rect windows; ///< covered part, whole windows clipped to the image
     int window_px = 0;    ///< 0: one block
     std::vector<BlockResult<L>> blocks;
+    tiling::Patch<std::int16_t> winners; ///< of `windows`
+    tiling::Patch<std::int16_t> medians; ///< of the winners (window_range.h); where pruning
 
     const BlockResult<L>& block_at(int row, int col) const
     {
@@ -136,11 +137,6 @@ struct LevelResult {
         const int block_row = row / window_px - windows.row / window_px;
         const int block_col = col / window_px - windows.col / window_px;
         return blocks[static_cast<std::size_t>(block_row * cols + block_col)];
-    }
-    int winner(int row, int col) const
-    {
-        const auto& block = block_at(row, col);
-        return block.winner(row - block.core.row, col - block.core.col);
     }
 };
 

@@ -63,9 +63,10 @@ TileMatch cut(const TileMatch& whole, const Rect& core, const PairShape& shape)
 template <typename L>
 std::int64_t CoarseSolutionOf<L>::bytes() const
 {
-    std::int64_t sum = tone.rect.area() + 11 * whole.core.area();
+    std::int64_t sum = tone.rect.area() + 11 * whole.core.area() +
+                       2 * (level.winners.rect.area() + level.medians.rect.area());
     for (const auto& block : level.blocks) {
-        sum += 2 * block.core.area() + static_cast<std::int64_t>(block.prior.size());
+        sum += static_cast<std::int64_t>(block.prior.size());
         for (const auto& line : block.lines) {
             sum += line.bytes();
         }
@@ -101,7 +102,9 @@ std::shared_ptr<const CoarseSolution> Levels<L>::solve_whole(const LevelImages& 
     result->level.size = image.size();
     result->level.windows = image;
     if (level > 0) {
-        keep_block(whole, sums, block, workspace);
+        result->level.winners = tiling::Patch<std::int16_t>(image);
+        keep_block(whole, sums, block, result->level.winners, workspace);
+        add_medians(result->level);
         result->tone = features.left_tone;
         return result;
     }
@@ -119,7 +122,7 @@ template <typename L>
 tiling::DisparityRange Levels<L>::range_of(const LevelJob<L>& job, const Rect& window) const
 {
     return options_.prune && job.coarser != nullptr
-               ? window_range(*job.coarser, window, job.range)
+               ? window_range(job.coarser->medians, job.coarser->size, window, job.range)
                : job.range;
 }
 
@@ -133,14 +136,24 @@ LevelResult<L> Levels<L>::solve_windows(const LevelJob<L>& job, const Rect& wind
     result.windows = windows;
     result.window_px = options_.window_px;
     result.blocks.resize(blocks.size());
+    result.winners = tiling::Patch<std::int16_t>(windows);
     over_windows(blocks.size(), [&](std::size_t i) {
         auto& kept = result.blocks[i];
         auto& workspace = workspaces.local();
         const BlockSums sums =
             solve_block(job, blocks[i], range_of(job, blocks[i]), kept.lines, workspace);
-        keep_block(job, sums, kept, workspace);
+        keep_block(job, sums, kept, result.winners, workspace);
     });
+    add_medians(result);
     return result;
+}
+
+template <typename L>
+void Levels<L>::add_medians(LevelResult<L>& level) const
+{
+    if (options_.prune) {
+        level.medians = winner_medians(level.winners, level.size);
+    }
 }
 
 template <typename L>
