@@ -80,6 +80,8 @@ matcher::Refined match(const TestPair& images, const matcher::Matcher& matcher)
     input.confidence.pixels = tile.confidence;
     input.reasons.pixels = tile.reasons;
     input.right_keys = tile.right_keys;
+    input.left = levels[0].left;
+    input.right = levels[0].right;
     return matcher::refine(whole, input, matcher.pair().shape, matcher.options());
 }
 
