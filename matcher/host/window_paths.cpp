@@ -192,33 +192,38 @@ private:
             follow(path, row, path.region.col, core.col);
             follow(path, row, core.col_end(), path.region.col_end());
         }
-        const std::uint8_t* along = along_at(row - first_along, core.col);
-        const std::ptrdiff_t along_step =
-            along_direction_.col > 0 ? std::ptrdiff_t(pitch_) : -std::ptrdiff_t(pitch_);
-        std::uint16_t* sums = job_.sums + std::size_t(row - core.row) * std::size_t(core.cols) *
-                                              std::size_t(stride_);
-        const std::uint8_t* costs = job_.cost.at(row, core.col);
-        std::array<StepPath, kApart> paths;
-        for (int k = 0; k < apart_count_; ++k) {
-            ApartPath& path = apart_[std::size_t(k)];
-            const std::size_t slot = path.slot(core.col);
-            paths[std::size_t(k)] = {path.values + slot * pitch_, path.least + slot,
-                                     job_.penalties->at(path.r, row, core.col)};
-        }
-        for (int i = 0; i < core.cols; ++i) {
-            if (down_) {
-                steps_.template sum<true>(along, paths.data(), apart_count_, pitch_, costs, sums);
-            } else {
-                steps_.template sum<false>(along, paths.data(), apart_count_, pitch_, costs,
-                                           sums);
-            }
-            along += along_step;
-            costs += stride_;
-            sums += stride_;
-        }
+        SumRow sum;
+        sum.along = along_at(row - first_along, core.col);
+        sum.along_step = along_direction_.col * std::ptrdiff_t(pitch_);
+        sum.pitch = pitch_;
+        sum.costs = job_.cost.at(row, core.col);
+        sum.sums = job_.sums +
+                   std::size_t(row - core.row) * std::size_t(core.cols) * std::size_t(stride_);
+        sum.cols = core.cols;
+        down_ ? sum_row<true>(sum, row) : sum_row<false>(sum, row);
         for (int k = 0; k < apart_count_; ++k) {
             keep_apart(apart_[std::size_t(k)], row);
             ++apart_[std::size_t(k)].travelled;
+        }
+    }
+
+    template <bool kFirst>
+    void sum_row(const SumRow& sum, int row)
+    {
+        std::array<StepPath, kApart> paths;
+        for (int k = 0; k < apart_count_; ++k) {
+            const ApartPath& path = apart_[std::size_t(k)];
+            const std::size_t slot = path.slot(job_.core.col);
+            paths[std::size_t(k)] = {path.values + slot * pitch_, path.least + slot,
+                                     job_.penalties->at(path.r, row, job_.core.col)};
+        }
+        switch (apart_count_) {
+        case 3:
+            return steps_.template sum_row<kFirst, 3>(sum, paths);
+        case 1:
+            return steps_.template sum_row<kFirst, 1>(sum, paths);
+        default:
+            return steps_.template sum_row<kFirst, 0>(sum, paths);
         }
     }
 
@@ -348,6 +353,14 @@ void in_lanes(const WindowJob& job, WindowWorkspace& workspace)
         return both_passes<kLanes, 3>(job, workspace);
     case 4:
         return both_passes<kLanes, 4>(job, workspace);
+    case 5:
+        return both_passes<kLanes, 5>(job, workspace);
+    case 6:
+        return both_passes<kLanes, 6>(job, workspace);
+    case 7:
+        return both_passes<kLanes, 7>(job, workspace);
+    case 8:
+        return both_passes<kLanes, 8>(job, workspace);
     default:
         return both_passes<kLanes, 0>(job, workspace);
     }
@@ -355,7 +368,7 @@ void in_lanes(const WindowJob& job, WindowWorkspace& workspace)
 
 void all_paths(const WindowJob& job, WindowWorkspace& workspace)
 {
-    if (job.cost.stride % 64 == 0) {
+    if (job.cost.stride % 64 == 0 && job.cost.stride > 256) {
         in_lanes<64>(job, workspace);
     } else if (job.cost.stride % 32 == 0) {
         in_lanes<32>(job, workspace);
