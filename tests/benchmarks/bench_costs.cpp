@@ -80,6 +80,12 @@ void all_windows(const Level& level, const host::LevelFeatures& features, int co
     }
 }
 
+// The instruction set `target`, and where a file knows no use for it the next best one.
+void use(std::int64_t target)
+{
+    hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & -target);
+}
+
 void set_time(benchmark::State& state, double things)
 {
     state.counters["each"] =
@@ -89,7 +95,7 @@ void set_time(benchmark::State& state, double things)
 
 void costs_of(benchmark::State& state, Cost cost, int count, std::int64_t target)
 {
-    hwy::SetSupportedTargetsForTest(target);
+    use(target);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Level level(cost, count);
     const host::LevelFeatures features = level.features();
@@ -105,7 +111,7 @@ void costs_of(benchmark::State& state, Cost cost, int count, std::int64_t target
 
 void features_of(benchmark::State& state, Cost cost, std::int64_t target)
 {
-    hwy::SetSupportedTargetsForTest(target);
+    use(target);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Level level(cost, kWindow);
     for (auto _ : state) {
