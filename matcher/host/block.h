@@ -22,7 +22,7 @@ struct LevelJob {
     tiling::DisparityRange range;                              ///< of the level
     const LevelResult<L>* coarser = nullptr;                   ///< null at the coarsest level
     const tiling::Patch<std::uint8_t>* coarser_tone = nullptr; ///< for eq. 3
-    const PenaltyMaps* penalties = nullptr; ///< where `solves_by_passes`
+    const PenaltyMaps* penalties = nullptr;                    ///< where `solves_by_passes`
     bool whole = false;      ///< one block: the image; its work is spread over the threads
     bool keep_lines = false; ///< a finer level starts its paths here
     bool keep_prior = false; ///< a finer level reads its prior here

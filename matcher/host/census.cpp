@@ -85,7 +85,10 @@ private:
     {
         return values_.data() + std::size_t((row + count_) % count_) * pitch();
     }
-    T* begin(int row) { return values_.data() + std::size_t((row + count_) % count_) * pitch(); }
+    T* begin(int row)
+    {
+        return values_.data() + std::size_t((row + count_) % count_) * pitch();
+    }
 
     const CensusWork& work_;
     int count_;
@@ -136,8 +139,7 @@ template <typename T>
 class CensusRows {
 public:
     explicit CensusRows(const CensusWork& work)
-        : work_(work), padded_(work),
-          bits_(std::size_t(work.shape.planes() * kBitsAPlane)),
+        : work_(work), padded_(work), bits_(std::size_t(work.shape.planes() * kBitsAPlane)),
           bytes_(std::size_t(work.out.rect().cols + kSlack))
     {
     }

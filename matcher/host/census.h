@@ -17,9 +17,10 @@ struct CensusShape {
 };
 
 /// Fills the first planes of `out` with census bits of its pixels: one bit for each
-/// neighbour, set where it is darker than the centre (docs/algorithm.md, section 3). `image` must hold the rectangle of `out` grown by the radii and clipped to `full`, the
-/// size of the whole level, at whose borders neighbours are replicated. Nodata neighbours are
-/// never darker. Uses the caller's threads.
+/// neighbour, set where it is darker than the centre (docs/algorithm.md, section 3). `image`
+/// must hold the rectangle of `out` grown by the radii and clipped to `full`, the size of the
+/// whole level, at whose borders neighbours are replicated. Nodata neighbours are never darker.
+/// Uses the caller's threads.
 void census(const tiling::Patch<std::uint16_t>& image, tiling::Size full, CensusShape shape,
             FeaturePlanes& out);
 

@@ -200,9 +200,8 @@ void hamming_costs(Cost cost, const CostRow& row, Buffer<std::uint8_t>& split,
                    std::uint8_t* costs)
 {
     constexpr std::size_t kMostPlanes = 8;
-    std::uint8_t* room =
-        split.need(2 * kMostPlanes * (static_cast<std::size_t>(row.cols + row.met()) + 64) +
-                   kMostPlanes);
+    std::uint8_t* room = split.need(
+        2 * kMostPlanes * (static_cast<std::size_t>(row.cols + row.met()) + 64) + kMostPlanes);
     switch (cost) {
     case Cost::census5x5:
         return HWY_DYNAMIC_DISPATCH(census5x5_row)(row, room, costs);

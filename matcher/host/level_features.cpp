@@ -67,9 +67,10 @@ LevelFeatures level_features(const LevelImages& images, const LevelPlan& plan, i
     f.images = &images;
     f.left_tone = tones(images.left, pair.left_tone);
     f.low_texture = low_texture(images.left, f.left_tone, aggregation);
-    const Rect seen = intersect(right_reach(aggregation, plan.ranges[k]), rect_of(f.right_size));
-    f.left = cost_planes(images.left, f.left_size, aggregation, pair.left_tone, options.cost,
-                         false);
+    const Rect seen =
+        intersect(right_reach(aggregation, plan.ranges[k]), rect_of(f.right_size));
+    f.left =
+        cost_planes(images.left, f.left_size, aggregation, pair.left_tone, options.cost, false);
     f.right =
         cost_planes(images.right, f.right_size, seen, pair.right_tone, options.cost, true);
     return f;

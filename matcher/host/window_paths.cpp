@@ -30,9 +30,7 @@ struct ApartPath {
 
     std::size_t slot(int col) const
     {
-        const int moved = r.col > 0   ? region.rows - 1 - travelled
-                          : r.col < 0 ? travelled
-                                      : 0;
+        const int moved = r.col > 0 ? region.rows - 1 - travelled : r.col < 0 ? travelled : 0;
         return std::size_t(col - region.col + moved);
     }
 };
@@ -47,7 +45,8 @@ public:
         : job_(job), stride_(job.cost.stride), pitch_(std::size_t(stride_) + kSlotGuard),
           down_(down), steps_(stride_, job.p1)
     {
-        const auto all = directions(job.paths).first(std::size_t(std::min(job.paths, kWindowPaths)));
+        const auto all =
+            directions(job.paths).first(std::size_t(std::min(job.paths, kWindowPaths)));
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Direction r = all[i];
             if (r.row == 0 && (r.col > 0) == down) {
@@ -119,8 +118,8 @@ private:
         path.number = number;
         path.region = region_of(r);
         const int slots = path.region.cols + (r.col != 0 ? path.region.rows - 1 : 0);
-        path.values = workspace.apart[k].need(pitch_ * std::size_t(slots) + kSlotGuard +
-                                              kReadBeyond);
+        path.values =
+            workspace.apart[k].need(pitch_ * std::size_t(slots) + kSlotGuard + kReadBeyond);
         path.least = workspace.apart_least[k].need(std::size_t(slots));
         guard(path.values, slots);
         path.values += kSlotGuard;
