@@ -74,7 +74,7 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
     if (cost == Cost::hmi) {
         lookup_costs(*pair.hmi, r, costs);
     } else {
-        hamming_costs(cost, r, workspace.split, costs);
+        hamming_costs(cost, r, costs);
     }
 }
 
