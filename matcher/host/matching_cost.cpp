@@ -1,9 +1,8 @@
 #include "matcher/host/matching_cost.h"
 
-#include "matcher/host/coarse_start.h"
 #include "matcher/host/hamming.h"
 #include "matcher/host/lookup.h"
-#include "matcher/kernel.h"
+#include "matcher/host/prior.h"
 
 #include <algorithm>
 #include <cstring>
@@ -74,7 +73,7 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
     if (cost == Cost::hmi) {
         lookup_costs(*pair.hmi, r, costs);
     } else {
-        hamming_costs(cost, r, workspace.split, costs);
+        hamming_costs(cost, r, costs);
     }
 }
 
@@ -83,19 +82,19 @@ void add_prior_row(const LevelFeatures& features, const LevelResult<L>& coarser,
                    const CostVolume& volume, int row, std::uint8_t* costs,
                    CostWorkspace& workspace)
 {
-    const int count = volume.range.count();
-    std::uint8_t* prior = workspace.prior.need(2 * std::size_t(count) + 16);
-    std::uint8_t* scratch = prior + count + 4;
-    for (int i = 0; i < volume.rect.cols; ++i, costs += volume.stride) {
-        const int col = volume.rect.col + i;
-        if (features.low_texture.at(row, col) == 0) {
-            continue;
-        }
-        const auto& block = coarser.block_at(row / 2, col / 2);
-        spread_disparities(block.prior_at(row / 2, col / 2), block.range, volume.range,
-                           std::uint8_t{kPriorCap}, scratch, prior);
-        for (int d = 0; d < count; ++d) {
-            costs[d] = static_cast<std::uint8_t>(costs[d] + (prior[d] >> 2));
+    const tiling::Rect& rect = volume.rect;
+    const auto of_flat = [&](int col) {
+        return col >= rect.col && col < rect.col_end() && features.low_texture.at(row, col) != 0
+                   ? costs + std::ptrdiff_t{col - rect.col} * volume.stride
+                   : nullptr;
+    };
+    // Two columns share one coarse pixel.
+    for (int col = rect.col / 2 * 2; col < rect.col_end(); col += 2) {
+        std::uint8_t* const pixels[2] = {of_flat(col), of_flat(col + 1)};
+        if (pixels[0] != nullptr || pixels[1] != nullptr) {
+            const auto& block = coarser.block_at(row / 2, col / 2);
+            add_prior({block.prior_at(row / 2, col / 2), block.range, volume.range},
+                      volume.stride, pixels, workspace.prior);
         }
     }
 }

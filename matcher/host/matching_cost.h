@@ -11,7 +11,6 @@ namespace hsgm::matcher::host {
 struct CostWorkspace {
     Buffer<std::uint8_t> right;
     Buffer<std::uint8_t> padding;
-    Buffer<std::uint8_t> split;
     Buffer<std::uint8_t> prior;
 };
 
