@@ -106,6 +106,7 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
     const auto paths = directions(job.options->paths);
     const StartLines start_lines{job.options->window_px, job.options->halo_px};
     lines.reserve(paths.size());
+    MatchStatistics work{1, sweep_job.cost.rect.area() * range.count(), 0};
     for (std::size_t i = 0; i < paths.size(); ++i) {
         sweep_job.direction = paths[i];
         sweep_job.direction_number = i;
@@ -117,7 +118,9 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
             sweep_job.lines = &lines.emplace_back(core, paths[i], start_lines, stride);
         }
         sweep(sweep_job, workspace.sweep);
+        work.path_steps += sweep_job.region.area() * range.count();
     }
+    job.work->add(work);
     return {core, range, stride, sweep_job.sums};
 }
 

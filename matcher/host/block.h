@@ -4,6 +4,7 @@
 #include "matcher/host/level_result.h"
 #include "matcher/host/matching_cost.h"
 #include "matcher/host/sweep.h"
+#include "matcher/host/work_counter.h"
 
 #include <optional>
 
@@ -21,6 +22,7 @@ struct LevelJob {
     bool whole = false;      ///< one block: the image; its work is spread over the threads
     bool keep_lines = false; ///< a finer level starts its paths here
     bool keep_prior = false; ///< a finer level reads its prior here
+    WorkCounter* work = nullptr;
 };
 
 /// Buffers of one worker, reused from block to block.
