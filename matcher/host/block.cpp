@@ -1,6 +1,5 @@
 #include "matcher/host/block.h"
 
-#include "matcher/host/winner.h"
 #include "matcher/kernel.h"
 
 #include <tbb/blocked_range.h>
@@ -125,7 +124,8 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
 }
 
 template <typename L>
-void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result)
+void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result,
+                BlockWorkspace<L>& workspace)
 {
     result.core = sums.core;
     result.range = sums.range;
@@ -134,17 +134,22 @@ void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& r
     if (job.keep_prior) {
         result.prior.resize(std::size_t(sums.core.area()) * std::size_t(sums.stride));
     }
+    const int cols = sums.core.cols;
     over_rows(job.whole, sums.core, [&](int begin, int end) {
+        Buffer<Winner> own;
+        Buffer<Winner>& buffer = job.whole ? own : workspace.winners;
+        Winner* winners = buffer.need(static_cast<std::size_t>(cols));
         for (int row = begin; row < end; ++row) {
-            for (int col = sums.core.col; col < sums.core.col_end(); ++col) {
-                const auto s = sums.at(row, col);
-                const Winner winner = find_winner(s);
-                result.winner(row - sums.core.row, col - sums.core.col) =
-                    static_cast<std::int16_t>(sums.range.min + winner.index);
-                if (job.keep_prior) {
-                    prior_from_sums(s, winner.sum, job.options->paths,
-                                    result.prior_at(row, col));
-                }
+            const SumsRow sums_row{sums.at(row, sums.core.col), cols, sums.stride,
+                                   sums.range.count()};
+            find_winners(sums_row, winners);
+            std::int16_t* to = result.winner.row(row - sums.core.row);
+            for (int i = 0; i < cols; ++i) {
+                to[i] = static_cast<std::int16_t>(sums.range.min + winners[i].index);
+            }
+            if (job.keep_prior) {
+                prior_row(sums_row, winners, job.options->paths,
+                          result.prior_at(row, sums.core.col));
             }
         }
     });
@@ -157,8 +162,8 @@ template BlockSums solve_block(const LevelJob<std::uint16_t>&, const Rect&,
                                tiling::DisparityRange, std::vector<LineStore<std::uint16_t>>&,
                                BlockWorkspace<std::uint16_t>&);
 template void keep_block(const LevelJob<std::uint8_t>&, const BlockSums&,
-                         BlockResult<std::uint8_t>&);
+                         BlockResult<std::uint8_t>&, BlockWorkspace<std::uint8_t>&);
 template void keep_block(const LevelJob<std::uint16_t>&, const BlockSums&,
-                         BlockResult<std::uint16_t>&);
+                         BlockResult<std::uint16_t>&, BlockWorkspace<std::uint16_t>&);
 
 } // namespace hsgm::matcher::host

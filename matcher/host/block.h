@@ -3,7 +3,9 @@
 #include "matcher/host/level_features.h"
 #include "matcher/host/level_result.h"
 #include "matcher/host/matching_cost.h"
+#include "matcher/host/sums.h"
 #include "matcher/host/sweep.h"
+#include "matcher/host/tile_output.h"
 #include "matcher/host/work_counter.h"
 
 #include <optional>
@@ -30,25 +32,10 @@ template <typename L>
 struct BlockWorkspace {
     Buffer<std::uint8_t> costs;
     Buffer<std::uint16_t> sums;
-    Buffer<std::uint32_t> keys;
+    Buffer<Winner> winners;
+    OutputWorkspace output;
     CostWorkspace cost_rows;
     SweepWorkspace<L> sweep;
-};
-
-/// Sums S of a block's core pixels, borrowed from the workspace they were computed in.
-struct BlockSums {
-    tiling::Rect core;
-    tiling::DisparityRange range;
-    int stride = 0;
-    const std::uint16_t* data = nullptr;
-
-    std::span<const std::uint16_t> at(int row, int col) const
-    {
-        return {data + (std::size_t(row - core.row) * std::size_t(core.cols) +
-                        std::size_t(col - core.col)) *
-                           std::size_t(stride),
-                static_cast<std::size_t>(range.count())};
-    }
 };
 
 /// Costs, paths and sums of one block. `lines` receives the path costs that the finer level
@@ -60,6 +47,7 @@ BlockSums solve_block(const LevelJob<L>& job, const tiling::Rect& core,
 
 /// Winners and prior of a solved block, as the finer level reads them.
 template <typename L>
-void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result);
+void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result,
+                BlockWorkspace<L>& workspace);
 
 } // namespace hsgm::matcher::host

@@ -103,15 +103,15 @@ std::shared_ptr<const CoarseSolution> Levels<L>::solve_whole(const LevelImages& 
     result->level.size = image.size();
     result->level.windows = image;
     if (level > 0) {
-        keep_block(whole, sums, block);
+        keep_block(whole, sums, block, workspace);
         result->tone = features.left_tone;
         return result;
     }
     TileOutput output(image, features, pair_);
     tbb::parallel_for(tbb::blocked_range<int>(0, image.rows, 16),
                       [&](const tbb::blocked_range<int>& rows) {
-                          Buffer<std::uint32_t> keys;
-                          output.add_rows(sums, rows.begin(), rows.end(), keys);
+                          OutputWorkspace own;
+                          output.add_rows(sums, rows.begin(), rows.end(), own);
                       });
     result->whole = output.take();
     return result;
@@ -137,9 +137,10 @@ LevelResult<L> Levels<L>::solve_windows(const LevelJob<L>& job, const Rect& wind
     result.blocks.resize(blocks.size());
     over_windows(blocks.size(), [&](std::size_t i) {
         auto& kept = result.blocks[i];
-        const BlockSums sums = solve_block(job, blocks[i], range_of(job, blocks[i]), kept.lines,
-                                           workspaces.local());
-        keep_block(job, sums, kept);
+        auto& workspace = workspaces.local();
+        const BlockSums sums =
+            solve_block(job, blocks[i], range_of(job, blocks[i]), kept.lines, workspace);
+        keep_block(job, sums, kept, workspace);
     });
     return result;
 }
@@ -155,7 +156,7 @@ TileMatch Levels<L>::solve_windows_to_tile(const LevelJob<L>& job, const Rect& w
         auto& workspace = workspaces.local();
         const BlockSums sums =
             solve_block(job, blocks[i], range_of(job, blocks[i]), none, workspace);
-        output.add(sums, workspace.keys);
+        output.add(sums, workspace.output);
     });
     return output.take();
 }
