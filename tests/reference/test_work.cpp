@@ -2,14 +2,10 @@
 
 #include "tests/catch.h"
 
-#include "matcher/reduce.h"
-#include "tests/reference/level.h"
-#include "tests/reference/match.h"
 #include "tests/reference/themes.h"
+#include "tests/reference/work.h"
 
 #include <tbb/global_control.h>
-
-#include <algorithm>
 
 using namespace hsgm::reference;
 namespace matcher = hsgm::matcher;
@@ -17,37 +13,6 @@ namespace tiling = hsgm::tiling;
 using matcher::MatchStatistics;
 
 namespace {
-
-// docs/algorithm.md, section 4, counted cell by cell.
-MatchStatistics work_of_twin(const MatchResult& twin, const Options& asked)
-{
-    const Options options = with_mode_applied(asked);
-    MatchStatistics work;
-    for (std::size_t k = 0; k < twin.levels.size(); ++k) {
-        const Level& level = twin.levels[k];
-        const Size size = level.pair.left.size();
-        const bool whole = k + 1 == twin.levels.size() && options.mode != Mode::local;
-        const int halo = whole ? 0 : options.halo_px;
-        for (const Window& window : level.windows) {
-            ++work.windows;
-            for (int row = 0; row < size.rows; ++row) {
-                for (int col = 0; col < size.cols; ++col) {
-                    const bool costed =
-                        row >= window.core.row - halo && row < window.core.row_end() + halo &&
-                        col >= window.core.col - halo && col < window.core.col_end() + halo;
-                    work.cells += costed ? window.range.count() : 0;
-                    for (const Step& step : directions(options.paths)) {
-                        work.path_steps +=
-                            path_region(window.core, step, halo, size).contains(row, col)
-                                ? window.range.count()
-                                : 0;
-                    }
-                }
-            }
-        }
-    }
-    return work;
-}
 
 // The images as the matcher takes them: every level whole.
 std::vector<matcher::LevelImages> images_of(const Case& c, int levels)
@@ -69,7 +34,7 @@ MatchStatistics work_of_matcher(const Case& c)
     const matcher::Matcher m(traits_of(c), c.options);
     auto images = images_of(c, m.plan().levels());
     const auto coarse = m.solve_coarse(images.back().left.pixels, images.back().right.pixels);
-    MatchStatistics work = work_of(*coarse);
+    MatchStatistics work = matcher::work_of(*coarse);
     work += m.match_tile(tiling::rect_of(c.pair.left.size()), images, *coarse).work;
     return work;
 }
@@ -81,7 +46,7 @@ void compare_work(const Theme& theme, std::uint64_t first, int cases)
         INFO(c.describe());
         const MatchResult twin = match(c.pair.left, c.pair.right, c.asked, c.tone_left,
                                        c.tone_right, c.options, &c.hmi);
-        const MatchStatistics expected = work_of_twin(twin, c.options);
+        const Work expected = work_of(twin, c.options);
         const MatchStatistics counted = work_of_matcher(c);
         CHECK(counted.windows == expected.windows);
         CHECK(counted.cells == expected.cells);
