@@ -80,8 +80,8 @@ synth::Scene bench_scene(const std::string& name, int side_px, int disparities)
         scene.terrain.waves = {{0.25 * range, side, 70, 0}, {0.04 * range, side / 2, 35, 40}};
         scene.city = city_of(roofs);
     } else if (name == "towers") {
-        scene.terrain.offset_px = 8;
-        scene.city = city_of(0.7 * range);
+        scene.terrain.offset_px = 0.04 * range;
+        scene.city = city_of(std::min(0.85 * range, 1e4));
     } else {
         throw std::invalid_argument("there is no scene '" + name + "'");
     }
@@ -123,10 +123,14 @@ BenchPair read_pair(const std::string& left, const std::string& right,
     histogram->fill(0);
     pair.right = read_image(right_source, mapping, *histogram);
     pair.right_tone = pipeline::find_tone(right_source.pixel_type(), *histogram);
+    if (pair.left.rows() != pair.right.rows()) {
+        throw io::InputError(left + " and " + right +
+                             " differ in height; a rectified pair has equal heights");
+    }
     try {
         matcher::plan_levels(pair.shape(), {});
     } catch (const std::invalid_argument& refused) {
-        throw io::InputError(refused.what());
+        throw io::ConfigError(refused.what());
     }
     return pair;
 }

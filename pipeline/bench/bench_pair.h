@@ -30,7 +30,7 @@ struct BenchPair {
 ///
 /// `town`:   a town on hills, as satellites see it: the ground rises and falls by half of the
 ///           range across the image, roofs stand up to a quarter of it (at most 40 px) above.
-/// `towers`: roofs up to 70 % of the range everywhere, on flat ground.
+/// `towers`: roofs of up to 85 % of the range, on flat ground.
 ///
 /// Disparities 0..disparities-1. `disparities` of more than a quarter of the side make hills
 /// too steep for any pair; `validate` refuses them.
@@ -39,7 +39,8 @@ synth::Scene bench_scene(const std::string& name, int side_px, int disparities);
 /// Renders a scene of `bench_scene` on all threads of the caller's arena.
 BenchPair render_pair(const std::string& name, int side_px, int disparities);
 
-/// Reads two images whole. Throws InputError as a run does for what cannot be matched.
+/// Reads two images whole. Throws InputError for images that are no rectified pair, and
+/// ConfigError for a range in which they have nothing in common.
 BenchPair read_pair(const std::string& left, const std::string& right,
                     tiling::DisparityRange asked);
 

@@ -33,7 +33,7 @@ OpenCV leaves out as many columns as there are disparities: `compared` counts on
 that all evaluate. Pruning searches less than is asked for: `evaluated` counts what is searched.
 
 The scene `town` is a town on hills that fill most of the range; `towers` has roofs of up to
-70 % of the range on flat ground, the hardest case for pruning. Of every list the first entry
+85 % of the range on flat ground, the hardest case for pruning. Of every list the first entry
 is the base, and the others are measured one at a time against it.
 Peers whose memory is not free are left out, with a line that says so. Times of a machine that
 does other work mean little, ratios more. With --json, JSON goes to standard output and the
