@@ -4,7 +4,6 @@
 #include "pipeline/bench/measure.h"
 #include "pipeline/error.h"
 
-#include <chrono>
 #include <random>
 
 namespace hsgm::bench {
@@ -38,19 +37,20 @@ matcher::Options options_of(int path_bits)
     return options;
 }
 
-// Runs `work` until it has taken long enough to be timed; returns the seconds of one.
+// Runs `work` until it has taken long enough to be timed; returns the computing time of one,
+// which for one thread is its time where nothing else disturbs it.
 template <typename Work>
 double seconds_of(Work work)
 {
-    const auto start = std::chrono::steady_clock::now();
-    std::chrono::duration<double> time{};
+    const double start_s = cpu_clock_s();
+    double time_s = 0;
     int times = 0;
-    while (time.count() < kLeast_s) {
+    while (time_s < kLeast_s) {
         work();
         ++times;
-        time = std::chrono::steady_clock::now() - start;
+        time_s = cpu_clock_s() - start_s;
     }
-    return time.count() / times;
+    return time_s / times;
 }
 
 double cells_per_s(int path_bits, int repeats)

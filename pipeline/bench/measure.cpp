@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <memory>
 
@@ -83,6 +84,12 @@ double bad_percent(const BenchPair& pair, const tiling::Image<float>& disparity_
     return scorer.score().bad.front().bad_percent;
 }
 
+// Of one whole match.
+struct Times {
+    double seconds = 0;
+    double cpu_seconds = 0;
+};
+
 // Runs contenders on one pair.
 class Runner {
 public:
@@ -90,8 +97,7 @@ public:
     {
     }
 
-    // Seconds of a whole match.
-    double run(const Contender& c)
+    Times run(const Contender& c)
     {
         pipeline::check_stop();
         forget();
@@ -99,6 +105,7 @@ public:
             matcher::use_instructions(c.instructions);
         }
         const auto start = std::chrono::steady_clock::now();
+        const double cpu_start_s = cpu_clock_s();
         if (c.peer) {
             on_threads(c.threads, [&] { peer_pair_->match(*c.peer, c.threads); });
         } else {
@@ -106,7 +113,7 @@ public:
                        [&] { found_ = match_in_memory(pair_, c.options, tile_size_px_); });
         }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        return time.count();
+        return {time.count(), cpu_clock_s() - cpu_start_s};
     }
     // Gives back the memory of the last result.
     void forget() { found_ = {}; }
@@ -171,10 +178,11 @@ using StageRuns = std::vector<std::vector<StageSeconds>>;
 
 double timed_run(Runner& runner, std::size_t i, PairResult& result, StageRuns& stages)
 {
-    const double seconds = runner.run(result.measured[i].contender);
-    result.measured[i].seconds.push_back(seconds);
+    const Times times = runner.run(result.measured[i].contender);
+    result.measured[i].seconds.push_back(times.seconds);
+    result.measured[i].cpu_seconds.push_back(times.cpu_seconds);
     stages[i].push_back(runner.found().seconds);
-    return seconds;
+    return times.seconds;
 }
 
 void run_round(Runner& runner, PairResult& result, StageRuns& stages)
@@ -201,6 +209,13 @@ StageSeconds stages_of_median(const Measured& m, const std::vector<StageSeconds>
 }
 
 } // namespace
+
+double cpu_clock_s()
+{
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 double median(std::vector<double> values)
 {

@@ -15,13 +15,17 @@ namespace hsgm::bench {
 /// The median of a list that is not empty; the mean of the two middles of an even one.
 double median(std::vector<double> values);
 
+/// Seconds that all threads of this process have computed so far.
+double cpu_clock_s();
+
 /// What was measured of one contender.
 struct Measured {
     Contender contender;
-    std::vector<double> seconds;   ///< of every timed run
-    std::vector<double> over_base; ///< of each run right after one of its base: their ratio
-    StageSeconds stages;           ///< of the run of median time; hsgm alone
-    matcher::MatchStatistics work; ///< hsgm alone
+    std::vector<double> seconds;     ///< of every timed run
+    std::vector<double> cpu_seconds; ///< likewise, of all threads: steadier on a busy machine
+    std::vector<double> over_base;   ///< of each run right after one of its base: their ratio
+    StageSeconds stages;             ///< of the run of median time; hsgm alone
+    matcher::MatchStatistics work;   ///< hsgm alone
     std::optional<PeakBytes> memory;
     std::optional<double> bad_percent; ///< pixels off by more than 1 px, or without a value,
                                        ///< of those that show in both images, in the compared

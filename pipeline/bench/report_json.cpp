@@ -46,6 +46,7 @@ ordered_json measured_json(const Measured& m, const PairResult& pair)
     const double seconds = m.median_s();
     json["compared_with"] = pair.measured[m.contender.base].contender.title;
     json["seconds"] = seconds_json(m.seconds);
+    json["cpu_seconds"] = seconds_json(m.cpu_seconds);
     json["time_over_base"] = m.time_over_base();
     const auto rate = [seconds](std::int64_t cells) {
         return static_cast<double>(cells) / seconds;

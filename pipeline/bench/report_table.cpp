@@ -14,6 +14,7 @@ namespace {
 using Text = std::back_insert_iterator<std::string>;
 
 constexpr double kMillion = 1e6;
+constexpr const char* kRow = "{:<34} {:>7} {:>8} {:>8} {:>8} {:>7} {:>9} {:>6} {:>6} {:>9}\n";
 
 double mebi(std::int64_t bytes)
 {
@@ -35,15 +36,15 @@ void print_row(Text out, const Measured& m, const PairResult& pair)
 {
     const double seconds = m.median_s();
     const auto rate = [seconds](std::int64_t cells) {
-        return static_cast<double>(cells) / seconds / kMillion;
+        return fmt::format("{:.0f}", static_cast<double>(cells) / seconds / kMillion);
     };
     const std::string memory = m.memory ? fmt::format("{:.0f}", mebi(m.memory->added)) : "-";
     const std::string bad = m.bad_percent ? fmt::format("{:.2f}", *m.bad_percent) : "-";
-    fmt::format_to(out,
-                   "{:<32} {:>7} {:>9.3f} {:>9.0f} {:>8.0f} {:>10.0f} {:>7} {:>6} {:>10.2f}\n",
-                   m.contender.title, m.contender.threads, seconds, rate(pair.compared_cells()),
-                   rate(pair.nominal_cells()), rate(pair.evaluated_cells(m)), memory, bad,
-                   m.time_over_base());
+    fmt::format_to(out, kRow, m.contender.title, m.contender.threads,
+                   fmt::format("{:.3f}", seconds), fmt::format("{:.3f}", median(m.cpu_seconds)),
+                   rate(pair.compared_cells()), rate(pair.nominal_cells()),
+                   rate(pair.evaluated_cells(m)), memory, bad,
+                   fmt::format("{:.2f}", m.time_over_base()));
 }
 
 void print_work(Text out, const PairResult& pair)
@@ -94,14 +95,13 @@ void print_pair(Text out, const PairResult& pair)
                    pair.source, shape.left.cols, shape.left.rows, shape.asked.min,
                    shape.asked.max, pair.span_of_truth ? "the content" : "what was found",
                    pair.span.percent, pair.span.low_px, pair.span.high_px);
-    fmt::format_to(out, "{:<32} {:>7} {:>9} {:>9} {:>8} {:>10} {:>7} {:>6} {:>10}\n", "",
-                   "threads", "seconds", "compared", "nominal", "evaluated", "MiB", "bad %",
-                   "time/base");
+    fmt::format_to(out, kRow, "", "threads", "seconds", "CPU s", "compared", "nominal",
+                   "evaluated", "MiB", "bad %", "time/base");
     for (const Measured& m : pair.measured) {
         print_row(out, m, pair);
     }
     for (const LeftOut& l : pair.left_out) {
-        fmt::format_to(out, "{:<32} {:>7} left out: {}\n", l.contender.title,
+        fmt::format_to(out, "{:<34} {:>7} left out: {}\n", l.contender.title,
                        l.contender.threads, l.why);
     }
     print_work(out, pair);
@@ -114,7 +114,7 @@ void print_pair(Text out, const PairResult& pair)
 void print_legend(Text out, const BenchResult& result)
 {
     fmt::format_to(out, R"(
-seconds    median of {} rounds, of the whole match
+seconds    median of {} rounds, of the whole match; CPU s: computing time of all threads
 compared   million px x disparities a second, counting only the columns that all evaluate
 nominal    the same of all columns, searched or not
 evaluated  the same of what was searched, halos and coarser levels included

@@ -47,8 +47,8 @@ std::set<std::string> keys_of(const json& object)
 }
 
 const std::set<std::string> kOfAll{
-    "title",   "matcher",     "mode",           "threads",      "compared_with",
-    "seconds", "cells_per_s", "time_over_base", "memory_bytes", "bad_percent"};
+    "title",       "matcher",        "mode",         "threads",     "compared_with", "seconds",
+    "cells_per_s", "time_over_base", "memory_bytes", "bad_percent", "cpu_seconds"};
 const std::set<std::string> kOfOurs{"cost",         "paths", "prune",
                                     "instructions", "work",  "stages_s"};
 
@@ -66,6 +66,8 @@ void check_measured(const json& m, const json& pair)
     CHECK(seconds["least"] <= seconds["median"]);
     CHECK(seconds["median"] <= seconds["most"]);
     CHECK(seconds["all"].size() >= 2);
+    CHECK(m["cpu_seconds"]["all"].size() == seconds["all"].size());
+    CHECK(m["cpu_seconds"]["least"] > 0);
     const double median = seconds["median"];
     const auto cells = [&](const char* kind) {
         return m["cells_per_s"][kind].get<double>() * median;
