@@ -116,6 +116,15 @@ Cost cost_from_name(std::string_view name)
     return value_in(kCosts, name, "cost");
 }
 
+std::vector<Cost> all_costs()
+{
+    std::vector<Cost> costs;
+    for (const auto& [cost, text] : kCosts) {
+        costs.push_back(cost);
+    }
+    return costs;
+}
+
 CostTraits traits(Cost cost)
 {
     switch (cost) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hsgm::matcher {
 
@@ -51,6 +52,9 @@ std::string_view name(Cost cost);
 /// std::invalid_argument listing the names there are.
 Mode mode_from_name(std::string_view name);
 Cost cost_from_name(std::string_view name);
+
+/// Every cost there is, in the order of the documentation.
+std::vector<Cost> all_costs();
 
 /// What a matching cost promises: its largest value, and how far round a pixel it reads.
 struct CostTraits {

@@ -1,6 +1,7 @@
 #include "io/error.h"
 #include "io/gdal_session.h"
 #include "pipeline/budget.h"
+#include "pipeline/commands/bench_command.h"
 #include "pipeline/commands/evaluate_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
@@ -103,5 +104,6 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_evaluate_command(app);
     hsgm::pipeline::add_synth_command(app);
     hsgm::pipeline::add_info_command(app);
+    hsgm::pipeline::add_bench_command(app);
     return run(app, argc, argv);
 }
