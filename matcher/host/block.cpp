@@ -166,8 +166,8 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
     MatchStatistics work{1, cost.rect.area() * range.count(), 0};
     for (const Direction r : paths) {
         const int halo = job.whole ? 0 : job.options->halo_px;
-        work.path_steps += path_region(core, r, halo, rect_of(job.features->left_size)).area() *
-                           range.count();
+        work.path_steps +=
+            path_region(core, r, halo, rect_of(job.features->left_size)).area() * range.count();
     }
     job.work->add(work);
     return {core, range, cost.stride, volumes.sums};
