@@ -154,6 +154,15 @@ Fill fill_from_name(std::string_view name)
     return value_in(kFills, name, "fill");
 }
 
+std::vector<Cost> all_costs()
+{
+    std::vector<Cost> costs;
+    for (const auto& [cost, text] : kCosts) {
+        costs.push_back(cost);
+    }
+    return costs;
+}
+
 CostTraits traits(Cost cost)
 {
     switch (cost) {

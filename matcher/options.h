@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hsgm::matcher {
 
@@ -74,6 +75,9 @@ Mode mode_from_name(std::string_view name);
 Cost cost_from_name(std::string_view name);
 Subpixel subpixel_from_name(std::string_view name);
 Fill fill_from_name(std::string_view name);
+
+/// Every cost there is, in the order of the documentation.
+std::vector<Cost> all_costs();
 
 /// What a matching cost promises: its largest value, and how far round a pixel it reads.
 struct CostTraits {

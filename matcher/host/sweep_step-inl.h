@@ -55,6 +55,19 @@ HWY_INLINE void add_to_sums(D, V path, int i, int stride, std::uint16_t* HWY_RES
     }
 }
 
+// The least of eight (or fewer) 16-bit lanes. Where one instruction finds it, Highway 1.0
+// would spread it over all lanes before one is read.
+template <class V>
+HWY_INLINE std::uint16_t least_of_eight(V v)
+{
+#if HWY_TARGET <= HWY_SSE4
+    if constexpr (sizeof(v) == 16 && hn::MaxLanes(hn::DFromV<V>()) == 8) {
+        return static_cast<std::uint16_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(v.raw)));
+    }
+#endif
+    return hn::GetLane(hn::MinOfLanes(hn::DFromV<V>(), v));
+}
+
 // Folds a vector to 128 bits, pairs of bytes to 16-bit lanes, and asks for their minimum,
 // which is one instruction there.
 template <class D>
@@ -69,10 +82,9 @@ HWY_INLINE hn::TFromD<D> least_lane(D d, hn::Vec<D> v)
         if constexpr (sizeof(L) == 1) {
             const auto pairs = hn::BitCast(d16, v);
             const auto low = hn::And(pairs, hn::Set(d16, 0xFF));
-            return static_cast<L>(
-                hn::GetLane(hn::MinOfLanes(d16, hn::Min(low, hn::ShiftRight<8>(pairs)))));
+            return static_cast<L>(least_of_eight(hn::Min(low, hn::ShiftRight<8>(pairs))));
         } else {
-            return hn::GetLane(hn::MinOfLanes(d16, v));
+            return least_of_eight(v);
         }
     }
 }

@@ -30,9 +30,7 @@ struct ApartPath {
 
     std::size_t slot(int col) const
     {
-        const int moved = r.col > 0   ? region.rows - 1 - travelled
-                          : r.col < 0 ? travelled
-                                      : 0;
+        const int moved = r.col > 0 ? region.rows - 1 - travelled : r.col < 0 ? travelled : 0;
         return std::size_t(col - region.col + moved);
     }
 };
@@ -47,7 +45,8 @@ public:
         : job_(job), stride_(job.cost.stride), pitch_(std::size_t(stride_) + kSlotGuard),
           down_(down), steps_(stride_, job.p1)
     {
-        const auto all = directions(job.paths).first(std::size_t(std::min(job.paths, kWindowPaths)));
+        const auto all =
+            directions(job.paths).first(std::size_t(std::min(job.paths, kWindowPaths)));
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Direction r = all[i];
             if (r.row == 0 && (r.col > 0) == down) {
@@ -119,8 +118,8 @@ private:
         path.number = number;
         path.region = region_of(r);
         const int slots = path.region.cols + (r.col != 0 ? path.region.rows - 1 : 0);
-        path.values = workspace.apart[k].need(pitch_ * std::size_t(slots) + kSlotGuard +
-                                              kReadBeyond);
+        path.values =
+            workspace.apart[k].need(pitch_ * std::size_t(slots) + kSlotGuard + kReadBeyond);
         path.least = workspace.apart_least[k].need(std::size_t(slots));
         guard(path.values, slots);
         path.values += kSlotGuard;
@@ -192,33 +191,38 @@ private:
             follow(path, row, path.region.col, core.col);
             follow(path, row, core.col_end(), path.region.col_end());
         }
-        const std::uint8_t* along = along_at(row - first_along, core.col);
-        const std::ptrdiff_t along_step =
-            along_direction_.col > 0 ? std::ptrdiff_t(pitch_) : -std::ptrdiff_t(pitch_);
-        std::uint16_t* sums = job_.sums + std::size_t(row - core.row) * std::size_t(core.cols) *
-                                              std::size_t(stride_);
-        const std::uint8_t* costs = job_.cost.at(row, core.col);
-        std::array<StepPath, kApart> paths;
-        for (int k = 0; k < apart_count_; ++k) {
-            ApartPath& path = apart_[std::size_t(k)];
-            const std::size_t slot = path.slot(core.col);
-            paths[std::size_t(k)] = {path.values + slot * pitch_, path.least + slot,
-                                     job_.penalties->at(path.r, row, core.col)};
-        }
-        for (int i = 0; i < core.cols; ++i) {
-            if (down_) {
-                steps_.template sum<true>(along, paths.data(), apart_count_, pitch_, costs, sums);
-            } else {
-                steps_.template sum<false>(along, paths.data(), apart_count_, pitch_, costs,
-                                           sums);
-            }
-            along += along_step;
-            costs += stride_;
-            sums += stride_;
-        }
+        SumRow sum;
+        sum.along = along_at(row - first_along, core.col);
+        sum.along_step = along_direction_.col * std::ptrdiff_t(pitch_);
+        sum.pitch = pitch_;
+        sum.costs = job_.cost.at(row, core.col);
+        sum.sums = job_.sums +
+                   std::size_t(row - core.row) * std::size_t(core.cols) * std::size_t(stride_);
+        sum.cols = core.cols;
+        down_ ? sum_row<true>(sum, row) : sum_row<false>(sum, row);
         for (int k = 0; k < apart_count_; ++k) {
             keep_apart(apart_[std::size_t(k)], row);
             ++apart_[std::size_t(k)].travelled;
+        }
+    }
+
+    template <bool kFirst>
+    void sum_row(const SumRow& sum, int row)
+    {
+        std::array<StepPath, kApart> paths;
+        for (int k = 0; k < apart_count_; ++k) {
+            const ApartPath& path = apart_[std::size_t(k)];
+            const std::size_t slot = path.slot(job_.core.col);
+            paths[std::size_t(k)] = {path.values + slot * pitch_, path.least + slot,
+                                     job_.penalties->at(path.r, row, job_.core.col)};
+        }
+        switch (apart_count_) {
+        case 3:
+            return steps_.template sum_row<kFirst, 3>(sum, paths);
+        case 1:
+            return steps_.template sum_row<kFirst, 1>(sum, paths);
+        default:
+            return steps_.template sum_row<kFirst, 0>(sum, paths);
         }
     }
 
@@ -335,32 +339,41 @@ void both_passes(const WindowJob& job, WindowWorkspace& workspace)
 }
 
 // Vectors for each pixel: a number known to the compiler keeps a pixel's sums in registers.
-template <int kLanes>
-void in_lanes(const WindowJob& job, WindowWorkspace& workspace)
+void in_registers(const WindowJob& job, WindowWorkspace& workspace, int vectors)
 {
-    const hn::CappedTag<std::uint8_t, kLanes> d;
-    switch (job.cost.stride / static_cast<int>(hn::Lanes(d))) {
+    switch (vectors) {
     case 1:
-        return both_passes<kLanes, 1>(job, workspace);
+        return both_passes<32, 1>(job, workspace);
     case 2:
-        return both_passes<kLanes, 2>(job, workspace);
+        return both_passes<32, 2>(job, workspace);
     case 3:
-        return both_passes<kLanes, 3>(job, workspace);
+        return both_passes<32, 3>(job, workspace);
     case 4:
-        return both_passes<kLanes, 4>(job, workspace);
+        return both_passes<32, 4>(job, workspace);
+    case 5:
+        return both_passes<32, 5>(job, workspace);
+    case 6:
+        return both_passes<32, 6>(job, workspace);
+    case 7:
+        return both_passes<32, 7>(job, workspace);
+    case 8:
+        return both_passes<32, 8>(job, workspace);
     default:
-        return both_passes<kLanes, 0>(job, workspace);
+        return both_passes<32, 0>(job, workspace);
     }
 }
 
+// Vectors of 32 bytes measure faster than longer ones, as long as the sums fit the
+// registers: fewer of them cross a cache line.
 void all_paths(const WindowJob& job, WindowWorkspace& workspace)
 {
-    if (job.cost.stride % 64 == 0) {
-        in_lanes<64>(job, workspace);
-    } else if (job.cost.stride % 32 == 0) {
-        in_lanes<32>(job, workspace);
+    if (job.cost.stride % 32 != 0) {
+        both_passes<16, 1>(job, workspace);
+    } else if (job.cost.stride % 64 == 0 && job.cost.stride > 256) {
+        both_passes<64, 0>(job, workspace);
     } else {
-        in_lanes<16>(job, workspace);
+        const hn::CappedTag<std::uint8_t, 32> d;
+        in_registers(job, workspace, job.cost.stride / static_cast<int>(hn::Lanes(d)));
     }
 }
 

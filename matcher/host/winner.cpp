@@ -9,103 +9,120 @@
 #define HWY_TARGET_INCLUDE "matcher/host/winner.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// After Highway: compiled once for every target.
+#include "matcher/host/sweep_step-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hsgm::matcher::host::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// The smallest lane: halves are folded down to 128 bits, where one instruction does it.
-template <class D>
-HWY_INLINE std::uint16_t least_lane(D d, hn::Vec<D> v)
-{
-    if constexpr (hn::MaxLanes(d) > 8) {
-        const hn::Half<D> half;
-        return least_lane(half, hn::Min(hn::UpperHalf(half, v), hn::LowerHalf(half, v)));
-    } else {
-        return hn::GetLane(hn::MinOfLanes(d, v));
-    }
-}
-
-// Both planes of a pixel in vectors of kLanes; padding lanes become infinitely dear.
-template <int kLanes>
-struct Planes {
+// A pixel's sums in 2 * kVectors vectors of kLanes, first those of the even indices. What
+// pads them is as dear as a sum can be and comes last, so it neither wins nor is the only
+// rival.
+template <int kLanes, int kVectors>
+class PixelWinner {
     using D = hn::CappedTag<std::uint16_t, kLanes>;
     using V = hn::Vec<D>;
+    static constexpr int kN = int(hn::MaxLanes(D()));
 
-    explicit Planes(const SumsRow& row)
-        : half(row.stride / 2), count(static_cast<std::uint16_t>(row.count)),
-          padded(row.count != row.stride), twice_iota(hn::Add(hn::Iota(D(), 0), hn::Iota(D(), 0)))
+public:
+    explicit PixelWinner(const SumsRow& row)
+        : half_(row.stride / 2), count_(row.count), vectors_(row.stride / 2 / kN)
     {
     }
 
-    // Calls body(sums, index of every lane) for all vectors of the pixel.
-    template <class Body>
-    HWY_INLINE void each(const std::uint16_t* sums, Body body) const
+    HWY_INLINE Winner of(const std::uint16_t* sums) const
     {
         const D d;
-        for (int i = 0; i < half; i += static_cast<int>(hn::Lanes(d))) {
-            const auto even = hn::Add(twice_iota, hn::Set(d, static_cast<std::uint16_t>(2 * i)));
-            const auto odd = hn::Add(even, hn::Set(d, std::uint16_t{1}));
-            body(searched(hn::LoadU(d, sums + i), even), even);
-            body(searched(hn::LoadU(d, sums + half + i), odd), odd);
+        const auto infinite = hn::Set(d, std::uint16_t{0xFFFF});
+        V least = infinite;
+        for (int v = 0; v < vectors(); ++v) {
+            least = hn::Min(least, hn::Min(even(sums, v), odd(sums, v)));
         }
-    }
-    HWY_INLINE V searched(V sums, V index) const
-    {
-        const D d;
-        const auto end = hn::Set(d, count);
-        return padded ? hn::IfThenElse(hn::Eq(hn::Max(index, end), index),
-                                       hn::Set(d, std::uint16_t{0xFFFF}), sums)
-                      : sums;
+        const std::uint16_t sum = least_lane(d, least);
+        const auto all = hn::Set(d, sum);
+        V first = infinite;
+        for (int v = 0; v < vectors(); ++v) {
+            first = hn::Min(first, where(hn::Eq(even(sums, v), all), index(v, 0)));
+            first = hn::Min(first, where(hn::Eq(odd(sums, v), all), index(v, 1)));
+        }
+        const std::uint16_t winner = least_lane(d, first);
+        V rival = infinite;
+        for (int v = 0; v < vectors(); ++v) {
+            rival = hn::Min(rival, far_from(winner, even(sums, v), index(v, 0)));
+            rival = hn::Min(rival, far_from(winner, odd(sums, v), index(v, 1)));
+        }
+        const bool lonely = winner <= 1 && winner + 2 >= count_;
+        return {winner, sum, lonely ? -1 : least_lane(d, rival)};
     }
 
-    int half;
-    std::uint16_t count;
-    bool padded;
-    V twice_iota;
+private:
+    HWY_INLINE int vectors() const { return kVectors > 0 ? kVectors : vectors_; }
+    HWY_INLINE V even(const std::uint16_t* sums, int v) const
+    {
+        return hn::LoadU(D(), sums + v * kN);
+    }
+    HWY_INLINE V odd(const std::uint16_t* sums, int v) const
+    {
+        return hn::LoadU(D(), sums + half_ + v * kN);
+    }
+    // The disparity index of every lane.
+    HWY_INLINE V index(int v, int odd) const
+    {
+        const D d;
+        const auto lane = hn::Iota(d, 0);
+        return hn::Add(hn::Add(lane, lane),
+                       hn::Set(d, static_cast<std::uint16_t>(2 * v * kN + odd)));
+    }
+    template <class M>
+    HWY_INLINE V where(M mask, V value) const
+    {
+        return hn::IfThenElse(mask, value, hn::Set(D(), std::uint16_t{0xFFFF}));
+    }
+    // The sums two or more away from the winner: lanes at most one away are those whose
+    // distance from the one below it is 0, 1 or 2.
+    HWY_INLINE V far_from(std::uint16_t winner, V sums, V at) const
+    {
+        const D d;
+        const auto distance = hn::Sub(at, hn::Set(d, static_cast<std::uint16_t>(winner - 1)));
+        const auto near = hn::Eq(hn::Min(distance, hn::Set(d, std::uint16_t{2})), distance);
+        return hn::Or(sums, hn::VecFromMask(d, near));
+    }
+
+    int half_;
+    int count_;
+    int vectors_;
 };
 
-template <int kLanes>
-HWY_INLINE Winner winner_of(const Planes<kLanes>& planes, const std::uint16_t* sums)
+template <int kLanes, int kVectors>
+void winners_of_row(const SumsRow& row, Winner* winners)
 {
-    using V = typename Planes<kLanes>::V;
-    const typename Planes<kLanes>::D d;
-    const auto infinite = hn::Set(d, std::uint16_t{0xFFFF});
-    V least = infinite;
-    planes.each(sums, [&](V s, V) HWY_ATTR { least = hn::Min(least, s); });
-    const std::uint16_t sum = least_lane(d, least);
-    const auto all = hn::Set(d, sum);
-    V first = infinite;
-    planes.each(sums, [&](V s, V index) HWY_ATTR {
-        first = hn::Min(first, hn::IfThenElse(hn::Eq(s, all), index, infinite));
-    });
-    const std::uint16_t index = least_lane(d, first);
-    // Lanes at index - 1 .. index + 1 are those whose distance from index - 1 is at most 2.
-    const auto below = hn::Set(d, static_cast<std::uint16_t>(index - 1));
-    const auto two = hn::Set(d, std::uint16_t{2});
-    V rival = infinite;
-    planes.each(sums, [&](V s, V at) HWY_ATTR {
-        const auto distance = hn::Sub(at, below);
-        const auto near = hn::Eq(hn::Min(distance, two), distance);
-        rival = hn::Min(rival, hn::IfThenElse(near, infinite, s));
-    });
-    const bool lonely = index <= 1 && index + 2 >= planes.count;
-    return {index, sum, lonely ? -1 : least_lane(d, rival)};
+    const PixelWinner<kLanes, kVectors> winner(row);
+    for (int col = 0; col < row.cols; ++col) {
+        winners[col] = winner.of(row.at(col));
+    }
 }
 
 template <int kLanes>
 void winners_in_lanes(const SumsRow& row, Winner* winners)
 {
-    const Planes<kLanes> planes(row);
-    for (int col = 0; col < row.cols; ++col) {
-        winners[col] = winner_of(planes, row.at(col));
+    const hn::CappedTag<std::uint16_t, kLanes> d;
+    switch (row.stride / 2 / static_cast<int>(hn::Lanes(d))) {
+    case 1:
+        return winners_of_row<kLanes, 1>(row, winners);
+    case 2:
+        return winners_of_row<kLanes, 2>(row, winners);
+    case 3:
+        return winners_of_row<kLanes, 3>(row, winners);
+    case 4:
+        return winners_of_row<kLanes, 4>(row, winners);
+    default:
+        return winners_of_row<kLanes, 0>(row, winners);
     }
 }
 
 void winners(const SumsRow& row, Winner* out)
 {
-    if (row.stride % 64 == 0) {
+    if (row.stride % 64 == 0 && row.stride > 128) {
         winners_in_lanes<32>(row, out);
     } else if (row.stride % 32 == 0) {
         winners_in_lanes<16>(row, out);
@@ -124,14 +141,14 @@ void prior_in_lanes(const SumsRow& row, const Winner* winners, std::uint8_t* pri
     const auto cap = hn::Set(d, std::uint16_t{kPriorCap});
     const int half = row.stride / 2;
     const auto quotient = [&](const std::uint16_t* sums, int least) HWY_ATTR {
-        const auto x = hn::SaturatedSub(hn::LoadU(d, sums),
-                                        hn::Set(d, static_cast<std::uint16_t>(least)));
+        const auto x =
+            hn::SaturatedSub(hn::LoadU(d, sums), hn::Set(d, static_cast<std::uint16_t>(least)));
         if constexpr (kPaths == 5) {
             // floor(x / 5) = x * 52429 >> 18 for every 16-bit x.
             return hn::Min(hn::ShiftRight<2>(hn::MulHigh(x, hn::Set(d, std::uint16_t{52429}))),
                            cap);
         } else {
-            return hn::Min(hn::ShiftRight<kPaths == 4 ? 2 : kPaths == 8 ? 3 : 4>(x), cap);
+            return hn::Min(hn::ShiftRight < kPaths == 4 ? 2 : kPaths == 8 ? 3 : 4 > (x), cap);
         }
     };
     for (int col = 0; col < row.cols; ++col, prior += row.stride) {
@@ -169,54 +186,107 @@ void prior(const SumsRow& row, const Winner* winners, int paths, std::uint8_t* o
 }
 
 // Keeps the lesser sums of one plane of a pixel, and whose they are.
-template <class Planes>
-HWY_INLINE void keep_less(const Planes& planes, const std::uint16_t* HWY_RESTRICT sums, int odd,
-                          std::uint16_t pixel, std::uint16_t* HWY_RESTRICT least,
-                          std::uint16_t* HWY_RESTRICT pixels)
+template <int kLanes, bool kPadded>
+class RightMerge {
+    using D = hn::CappedTag<std::uint16_t, kLanes>;
+
+public:
+    explicit RightMerge(const SumsRow& row)
+        : half_(row.stride / 2), end_(hn::Set(D(), static_cast<std::uint16_t>(row.count)))
+    {
+    }
+
+    HWY_INLINE void plane(const std::uint16_t* HWY_RESTRICT sums, int odd, std::uint16_t pixel,
+                          std::uint16_t* HWY_RESTRICT least,
+                          std::uint16_t* HWY_RESTRICT pixels) const
+    {
+        const D d;
+        const auto mine = hn::Set(d, pixel);
+        for (int i = 0; i < half_; i += static_cast<int>(hn::Lanes(d))) {
+            const auto s = searched(hn::LoadU(d, sums + i), 2 * i + odd);
+            const auto old = hn::LoadU(d, least + i);
+            const auto less = hn::Min(s, old);
+            const auto stays = hn::Eq(less, old);
+            hn::StoreU(less, d, least + i);
+            hn::StoreU(hn::IfThenElse(stays, hn::LoadU(d, pixels + i), mine), d, pixels + i);
+        }
+    }
+
+private:
+    // Padding must not stand for a right pixel: there it is infinitely dear.
+    HWY_INLINE hn::Vec<D> searched(hn::Vec<D> sums, int first) const
+    {
+        if constexpr (!kPadded) {
+            return sums;
+        } else {
+            const D d;
+            const auto lane = hn::Iota(d, 0);
+            const auto index =
+                hn::Add(hn::Add(lane, lane), hn::Set(d, static_cast<std::uint16_t>(first)));
+            return hn::Or(sums, hn::VecFromMask(d, hn::Eq(hn::Max(index, end_), index)));
+        }
+    }
+
+    int half_;
+    hn::Vec<D> end_;
+};
+
+// Neighbouring pixels write over one another by one lane, and reading what was just written
+// at another place takes the processor long: the two halves of the row take turns, each with
+// candidates of its own.
+template <int kLanes, bool kPadded>
+void merge_row(const SumsRow& row, const std::uint8_t* valid, const CandidatePlanes& left,
+               const CandidatePlanes& right)
 {
-    const typename Planes::D d;
-    const auto mine = hn::Set(d, pixel);
-    for (int i = 0; i < planes.half; i += static_cast<int>(hn::Lanes(d))) {
-        const auto index =
-            hn::Add(planes.twice_iota, hn::Set(d, static_cast<std::uint16_t>(2 * i + odd)));
-        const auto s = planes.searched(hn::LoadU(d, sums + i), index);
-        const auto old = hn::LoadU(d, least + i);
-        const auto less = hn::Min(s, old);
-        const auto stays = hn::Eq(less, old);
-        hn::StoreU(less, d, least + i);
-        hn::StoreU(hn::IfThenElse(stays, hn::LoadU(d, pixels + i), mine), d, pixels + i);
+    const RightMerge<kLanes, kPadded> merge(row);
+    const auto pixel = [&](int col, const CandidatePlanes& to) HWY_ATTR {
+        if (valid[col] != 0) {
+            // The even disparities meet every second right pixel from number `first` on.
+            const int first = row.cols - 1 - col;
+            const int even = (first % 2 != 0 ? to.plane : 0) + first / 2;
+            const int odd = (first % 2 != 0 ? 0 : to.plane) + (first + 1) / 2;
+            const auto number = static_cast<std::uint16_t>(col);
+            merge.plane(row.at(col), 0, number, to.sums + even, to.pixels + even);
+            merge.plane(row.at(col) + row.stride / 2, 1, number, to.sums + odd,
+                        to.pixels + odd);
+        }
+    };
+    const int half = row.cols / 2;
+    for (int col = 0; col < half; ++col) {
+        pixel(col, left);
+        pixel(half + col, right);
+    }
+    if (row.cols % 2 != 0) {
+        pixel(row.cols - 1, right);
+    }
+    // Of equal sums the left half's stays.
+    for (int i = 0; i < 2 * left.plane; ++i) {
+        const bool stays = left.sums[i] <= right.sums[i];
+        left.pixels[i] = stays ? left.pixels[i] : right.pixels[i];
+        left.sums[i] = stays ? left.sums[i] : right.sums[i];
     }
 }
 
 template <int kLanes>
-void merge_in_lanes(const SumsRow& row, const std::uint8_t* valid, int plane,
-                    std::uint16_t* least, std::uint16_t* pixels)
+void merge_in_lanes(const SumsRow& row, const std::uint8_t* valid, const CandidatePlanes& left,
+                    const CandidatePlanes& right)
 {
-    const Planes<kLanes> planes(row);
-    const int half = row.stride / 2;
-    for (int col = 0; col < row.cols; ++col) {
-        if (valid[col] == 0) {
-            continue;
-        }
-        // The even disparities meet every second right pixel from number `first` on.
-        const int first = row.cols - 1 - col;
-        const int even = (first % 2 != 0 ? plane : 0) + first / 2;
-        const int odd = (first % 2 != 0 ? 0 : plane) + (first + 1) / 2;
-        const auto pixel = static_cast<std::uint16_t>(col);
-        keep_less(planes, row.at(col), 0, pixel, least + even, pixels + even);
-        keep_less(planes, row.at(col) + half, 1, pixel, least + odd, pixels + odd);
+    if (row.count == row.stride) {
+        merge_row<kLanes, false>(row, valid, left, right);
+    } else {
+        merge_row<kLanes, true>(row, valid, left, right);
     }
 }
 
-void merge(const SumsRow& row, const std::uint8_t* valid, int plane, std::uint16_t* least,
-           std::uint16_t* pixels)
+void merge(const SumsRow& row, const std::uint8_t* valid, const CandidatePlanes& left,
+           const CandidatePlanes& right)
 {
-    if (row.stride % 64 == 0) {
-        merge_in_lanes<32>(row, valid, plane, least, pixels);
+    if (row.stride % 64 == 0 && row.stride > 128) {
+        merge_in_lanes<32>(row, valid, left, right);
     } else if (row.stride % 32 == 0) {
-        merge_in_lanes<16>(row, valid, plane, least, pixels);
+        merge_in_lanes<16>(row, valid, left, right);
     } else {
-        merge_in_lanes<8>(row, valid, plane, least, pixels);
+        merge_in_lanes<8>(row, valid, left, right);
     }
 }
 
@@ -242,17 +312,19 @@ void prior_row(const SumsRow& row, const Winner* winners, int paths, std::uint8_
 
 void RightCandidates::clear(int cols, int stride)
 {
-    half_ = (cols + stride) / 2 + 1;
-    const auto size = 2 * static_cast<std::size_t>(half_);
-    sums_ = sums_buffer_.need(size);
-    pixels_ = pixels_buffer_.need(size);
-    std::fill_n(sums_, size, std::uint16_t{0xFFFF});
-    std::fill_n(pixels_, size, kNobody);
+    const int plane = (cols + stride) / 2 + 1;
+    const auto size = 4 * static_cast<std::size_t>(plane);
+    std::uint16_t* sums = sums_.need(size);
+    std::uint16_t* pixels = pixels_.need(size);
+    std::fill_n(sums, size, std::uint16_t{0xFFFF});
+    std::fill_n(pixels, size, kNobody);
+    left_ = {plane, sums, pixels};
+    right_ = {plane, sums + size / 2, pixels + size / 2};
 }
 
 void RightCandidates::merge(const SumsRow& row, const std::uint8_t* valid)
 {
-    HWY_DYNAMIC_DISPATCH(merge)(row, valid, half_, sums_, pixels_);
+    HWY_DYNAMIC_DISPATCH(merge)(row, valid, left_, right_);
 }
 
 } // namespace hsgm::matcher::host

@@ -33,6 +33,13 @@ void find_winners(const SumsRow& row, Winner* winners);
 /// q of every disparity (docs/algorithm.md, section 3), `stride` in natural order a pixel.
 void prior_row(const SumsRow& row, const Winner* winners, int paths, std::uint8_t* prior);
 
+/// Two planes, each `plane` long, of candidates with even and with odd numbers.
+struct CandidatePlanes {
+    int plane = 0;
+    std::uint16_t* sums = nullptr;
+    std::uint16_t* pixels = nullptr;
+};
+
 /// Candidates of the right view that one row of left pixels brings: for right pixel number j,
 /// counted from the right end, the least sum and which left pixel it is from. Pixel i with
 /// disparity index d meets number cols - 1 - i + d. Even and odd numbers lie apart, as the
@@ -43,25 +50,24 @@ public:
 
     /// Forgets everything; room for rows of this shape.
     void clear(int cols, int stride);
-    /// The pixels of `row` for which `valid` is not 0, from left to right: of equal sums the
-    /// first stays, which has the lower disparity.
+    /// The pixels of `row` for which `valid` is not 0; once after `clear`. Of equal sums the
+    /// left-most pixel's stays, which has the lowest disparity.
     void merge(const SumsRow& row, const std::uint8_t* valid);
 
-    std::uint16_t sum(int number) const { return sums_[index(number)]; }
+    std::uint32_t sum(int number) const { return left_.sums[index(number)]; }
     /// The left pixel, or kNobody.
-    std::uint16_t pixel(int number) const { return pixels_[index(number)]; }
+    std::uint16_t pixel(int number) const { return left_.pixels[index(number)]; }
 
 private:
     std::size_t index(int number) const
     {
-        return static_cast<std::size_t>((number % 2 != 0 ? half_ : 0) + number / 2);
+        return static_cast<std::size_t>((number % 2 != 0 ? left_.plane : 0) + number / 2);
     }
 
-    int half_ = 0;
-    Buffer<std::uint16_t> sums_buffer_;
-    Buffer<std::uint16_t> pixels_buffer_;
-    std::uint16_t* sums_ = nullptr;
-    std::uint16_t* pixels_ = nullptr;
+    Buffer<std::uint16_t> sums_;
+    Buffer<std::uint16_t> pixels_;
+    CandidatePlanes left_;  ///< of the row's left half, then of all
+    CandidatePlanes right_; ///< of its right half
 };
 
 } // namespace hsgm::matcher::host
