@@ -1,11 +1,13 @@
 #include "tests/catch.h"
 
 #include "pipeline/geometry/map_projection.h"
+#include "tests/unit/geometry/words.h"
 
 #include <cmath>
 #include <string>
 
 using namespace hsgm::geometry;
+using samples::says;
 
 namespace {
 
@@ -19,13 +21,6 @@ std::string refusal(const std::string& crs, const std::string& vertical = "")
     return "no refusal";
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-    CAPTURE(text, part);
-    CHECK(text.find(part) != std::string::npos);
-    return text.find(part) != std::string::npos;
-}
-
 } // namespace
 
 TEST_CASE("the automatic map is the UTM zone of the place")
@@ -35,8 +30,8 @@ TEST_CASE("the automatic map is the UTM zone of the place")
     CHECK(MapProjection::automatic(-180, 10).name() == "WGS 84 / UTM zone 1N");
     CHECK(MapProjection::automatic(180, 10).name() == "WGS 84 / UTM zone 1N");
     CHECK(MapProjection::automatic(179.99, -10).name() == "WGS 84 / UTM zone 60S");
-    CHECK(contains(MapProjection::automatic(0, 85).name(), "UPS North"));
-    CHECK(contains(MapProjection::automatic(0, -81).name(), "UPS South"));
+    CHECK(says(MapProjection::automatic(0, 85).name(), "UPS North"));
+    CHECK(says(MapProjection::automatic(0, -81).name(), "UPS South"));
 }
 
 TEST_CASE("UTM coordinates are those that can be looked up")
@@ -50,7 +45,7 @@ TEST_CASE("UTM coordinates are those that can be looked up")
     CHECK(equator.height_m == Approx(123.5));
     CHECK(map.forward({33, 1, 0}).y == Approx(110574.389 * 0.9996).margin(0.01));
     CHECK(map.in_metres());
-    CHECK(contains(map.height_name(), "WGS84 ellipsoid"));
+    CHECK(says(map.height_name(), "WGS84 ellipsoid"));
 }
 
 TEST_CASE("maps lead there and back")
@@ -76,7 +71,7 @@ TEST_CASE("heights above EGM96 are those above the ellipsoid less the undulation
     CHECK(map.forward({31.13, 29.98, 75}).height_m == Approx(75 - 15.4).margin(0.1));
     CHECK(map.inverse(map.forward({31.13, 29.98, 75})).height_m == Approx(75));
     CHECK(map.height_name() == "EGM96 height");
-    CHECK(contains(map.wkt(), "COMPOUNDCRS"));
+    CHECK(says(map.wkt(), "COMPOUNDCRS"));
     const MapProjection written = MapProjection::from_text("EPSG:32740+5773");
     CHECK(written.forward({55.71, -21.23, 2339}).height_m == Approx(2339 - 1.9).margin(0.1));
     const MapProjection turkey = MapProjection::from_text("EPSG:32637", "EPSG:5773");
@@ -98,11 +93,11 @@ TEST_CASE("a copy of a map is the same map")
 
 TEST_CASE("coordinate reference systems that cannot be used are refused with the reason")
 {
-    CHECK(contains(refusal("EPSG:99999"), "'EPSG:99999' is no coordinate reference system"));
-    CHECK(contains(refusal("somewhere"), "write for example EPSG:32740"));
-    CHECK(contains(refusal("EPSG:4978"), "is no map"));
-    CHECK(contains(refusal("EPSG:5773"), "is no map"));
-    CHECK(contains(refusal("EPSG:32740", "EPSG:32740"), "is no vertical datum"));
-    CHECK(contains(refusal("EPSG:32740+5773", "EGM96"), "a vertical datum of its own"));
-    CHECK(contains(refusal("EPSG:32740", "EGM2008"), "which is not installed"));
+    CHECK(says(refusal("EPSG:99999"), "'EPSG:99999' is no coordinate reference system"));
+    CHECK(says(refusal("somewhere"), "write for example EPSG:32740"));
+    CHECK(says(refusal("EPSG:4978"), "is no map"));
+    CHECK(says(refusal("EPSG:5773"), "is no map"));
+    CHECK(says(refusal("EPSG:32740", "EPSG:32740"), "is no vertical datum"));
+    CHECK(says(refusal("EPSG:32740+5773", "EGM96"), "a vertical datum of its own"));
+    CHECK(says(refusal("EPSG:32740", "EGM2008"), "which is not installed"));
 }
