@@ -278,9 +278,14 @@ EpipolarFrame Builder::laid(const Extent& extent, int step_px) const
     const auto first_col = static_cast<int>(std::floor(extent.col_min));
     frame.size = {static_cast<int>(std::ceil(extent.row_max)) - first_row + 1,
                   static_cast<int>(std::ceil(extent.col_max)) - first_col + 1};
+    // The partner of a pixel may lie beside the frame by as much as its disparity.
+    const double beside_px =
+        std::max(std::abs(options_.below_m), std::abs(options_.above_m)) * frame.px_per_m;
+    const int beside = static_cast<int>(std::ceil(beside_px / step_px)) + 1;
     const int rows = tiling::ceil_div(frame.size.rows, step_px) + 3;
-    const int cols = tiling::ceil_div(frame.size.cols, step_px) + 3;
-    frame.map = Lattice(first_row - step_px, first_col - step_px, step_px, rows, cols, 3);
+    const int cols = tiling::ceil_div(frame.size.cols, step_px) + 1 + 2 * beside;
+    frame.map =
+        Lattice(first_row - step_px, first_col - beside * step_px, step_px, rows, cols, 3);
     for (int i = 0; i < rows; ++i) {
         follow_row(frame.map, i);
     }

@@ -24,7 +24,8 @@ std::array<double, 4> spline_slope(double t)
     return {-s * s / 2, (3 * t * t - 4 * t) / 2, (4 * s - 3 * s * s) / 2, t * t / 2};
 }
 
-/// The cell that holds `position` (in steps), clamped to those inside the grid.
+/// The cell that holds `position` (in steps). Control points beyond the outermost ones repeat
+/// them, so the surface goes on smoothly and is level from two steps outside on.
 struct Cell {
     int first = 0; // of its four control points, may lie outside and is clamped there
     double t = 0;
@@ -32,9 +33,9 @@ struct Cell {
 
 Cell cell_of(double position, int count)
 {
-    const double inside = std::clamp(position, 0.0, static_cast<double>(count - 1));
-    const int cell = std::min(static_cast<int>(inside), count - 2);
-    return {cell - 1, inside - cell};
+    const double near = std::clamp(position, -3.0, static_cast<double>(count + 2));
+    const double cell = std::floor(near);
+    return {static_cast<int>(cell) - 1, near - cell};
 }
 
 } // namespace
@@ -88,8 +89,8 @@ double ReferenceSurface::height_m(double x, double y, double& slope_x, double& s
         slope_x += down[k] * value_slope;
         slope_y -= down_slope[k] * value;
     }
-    slope_x = east < 0 || east > posts_.cols() - 1 ? 0 : slope_x / step_m_;
-    slope_y = south < 0 || south > posts_.rows() - 1 ? 0 : slope_y / step_m_;
+    slope_x /= step_m_;
+    slope_y /= step_m_;
     return height;
 }
 

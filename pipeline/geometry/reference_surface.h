@@ -15,7 +15,8 @@ public:
     /// Posts `step_m` apart, the first at (`west`, `north`), columns to the east, rows to the
     /// south; at least 4 x 4. Between them uniform cubic B-splines with the posts as control
     /// points: twice differentiable, and smoother than the posts themselves, so that it takes
-    /// out the relief and not the noise. Beyond the outermost posts their heights go on.
+    /// out the relief and not the noise. Beyond the outermost posts their heights go on,
+    /// reached smoothly within two steps.
     ReferenceSurface(double west, double north, double step_m, tiling::Image<double> posts);
 
     double height_m(double x, double y) const;
