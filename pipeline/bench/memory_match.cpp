@@ -43,16 +43,6 @@ private:
 };
 
 template <typename T>
-Patch<T> cut(const Patch<T>& whole, const Rect& part)
-{
-    Patch<T> patch(part);
-    for (int row = 0; part.cols > 0 && row < part.rows; ++row) {
-        std::copy_n(&whole.at(part.row + row, part.col), part.cols, patch.pixels.row(row));
-    }
-    return patch;
-}
-
-template <typename T>
 void paste(const Image<T>& part, const Rect& where, Image<T>& image)
 {
     for (int row = 0; row < where.rows; ++row) {
@@ -166,12 +156,7 @@ matcher::Refined second_pass(const Matcher& matcher, const matcher::RefineInput&
         const Rect core = intersect(
             {i / across * kPieceRows, i % across * kPieceCols, kPieceRows, kPieceCols},
             rect_of(shape.left));
-        const Rect grown =
-            intersect(expand(core, matcher::refine_margin_px(options)), rect_of(shape.left));
-        const matcher::RefineInput input{
-            cut(first.disparity_q8, grown), cut(first.confidence, grown),
-            cut(first.reasons, grown), cut(first.right_keys, matcher::keys_of(grown, shape))};
-        const matcher::Refined piece = matcher::refine(core, input, shape, options);
+        const matcher::Refined piece = matcher::refine(core, first, shape, options);
         paste(piece.disparity_px, core, whole.disparity_px);
         paste(piece.confidence, core, whole.confidence);
         paste(piece.reasons, core, whole.reasons);
@@ -194,7 +179,7 @@ MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& optio
     const int learnt_at = learns ? matcher::hmi_level(traits.shape) : 0;
     const int levels =
         std::max(matcher::plan_levels(traits.shape, options).levels(), learnt_at + 1);
-    const auto images = pyramid(pair, levels);
+    auto images = pyramid(pair, levels);
     match.seconds.pyramid = lap.seconds();
     if (learns) {
         const LevelImages& level = images[static_cast<std::size_t>(learnt_at)];
@@ -207,8 +192,10 @@ MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& optio
     const auto coarse = matcher.solve_coarse(images[top].left.pixels, images[top].right.pixels);
     match.work = work_of(*coarse);
     match.seconds.coarse = lap.seconds();
-    const auto first = match_tiles(matcher, images, *coarse, tile_size_px, match.work);
+    auto first = match_tiles(matcher, images, *coarse, tile_size_px, match.work);
     match.seconds.windows = lap.seconds();
+    first.left = std::move(images[0].left);
+    first.right = std::move(images[0].right);
     match.result = second_pass(matcher, first);
     match.seconds.second = lap.seconds();
     return match;
@@ -225,7 +212,13 @@ std::int64_t memory_match_bytes(const matcher::PairShape& shape,
     constexpr std::int64_t kPassBytes = 2 * (4 + 1 + 2) + 4; // both passes, and the keys
     const std::int64_t images = kPyramidBytes * (shape.left.area() + shape.right.area());
     const std::int64_t passes = kPassBytes * std::max(shape.left.area(), shape.right.area());
-    return images + passes + matcher.coarse_bytes() + matcher.tile_bytes(tile_size_px, threads);
+    const Rect piece =
+        intersect({shape.left.rows / 2, shape.left.cols / 2, kPieceRows, kPieceCols},
+                  rect_of(shape.left));
+    const std::int64_t second =
+        threads * matcher::refine_bytes(piece, shape, matcher.options());
+    return images + passes +
+           std::max(matcher.coarse_bytes() + matcher.tile_bytes(tile_size_px, threads), second);
 }
 
 } // namespace hsgm::bench

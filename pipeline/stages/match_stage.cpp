@@ -122,7 +122,7 @@ MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
     const PreparedPair prepared(left, right, planned.pyramid_levels, scratch.path());
     const Matcher matcher(pair_traits(planned, prepared), job.matcher);
     match_tiles(planned, matcher, prepared, first_pass, progress);
-    return refine_and_write(first_pass, planned.shape, job, planned.geo);
+    return refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
 }
 
 // Pictures for people, made from the finished rasters.
