@@ -130,11 +130,10 @@ CostTraits traits(Cost cost)
         return {48, 3, 3};
     case Cost::census9x7:
         return {59, 3, 4};
-    case Cost::pairs5x5:
-        return {59, 2, 2};
     case Cost::ternary5x5:
-    case Cost::census_ad:
         return {48, 2, 2};
+    case Cost::pairs5x5:
+    case Cost::census_ad:
     case Cost::pairs_bt:
         return {59, 2, 2};
     case Cost::birchfield_tomasi:

@@ -13,7 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace hsgm::matcher::host::HWY_NAMESPACE {
 
-// The difference of one pair of pixels: of gradients, and a quarter of that of tones.
+// The difference of one pair of pixels: twice that of gradients, and a quarter of that of
+// tones.
 class Difference {
 public:
     explicit Difference(const CostRow& row) : row_(row) {}
@@ -28,8 +29,9 @@ public:
         for (int k = 0; k < kVectors; ++k, at += hn::Lanes(d)) {
             const auto of_tones =
                 tone.difference(d, right + at + 3 * row_.right_pitch, row_.right_pitch);
-            const auto sum = hn::Add(gradient.difference(d, right + at, row_.right_pitch),
-                                     hn::ShiftRight<2>(of_tones));
+            const auto of_gradients = gradient.difference(d, right + at, row_.right_pitch);
+            const auto sum =
+                hn::Add(hn::Add(of_gradients, of_gradients), hn::ShiftRight<2>(of_tones));
             writer.write(d, at, hn::Min(sum, hn::Set(d, std::uint8_t{kMostDifference})));
         }
     }

@@ -116,7 +116,7 @@ struct AtMost {
     }
 };
 
-// Adds the difference of tones.
+// Twice the bits, and half the difference of tones as far as that goes.
 class WithTones {
 public:
     WithTones(const CostRow&, const std::uint8_t* left, const std::uint8_t* right)
@@ -131,7 +131,9 @@ public:
         const auto right = hn::LoadU(d, right_ + at);
         const auto difference =
             hn::Or(hn::SaturatedSub(left, right), hn::SaturatedSub(right, left));
-        return hn::Add(bits, hn::Min(difference, hn::Set(d, std::uint8_t{24})));
+        const auto half =
+            hn::ShiftRight<1>(hn::Min(difference, hn::Set(d, std::uint8_t{24})));
+        return hn::Min(hn::Add(hn::Add(bits, bits), half), hn::Set(d, std::uint8_t{59}));
     }
 
 private:
@@ -139,7 +141,8 @@ private:
     const std::uint8_t* right_;
 };
 
-// Three quarters of the bits and half the difference of gradients.
+// Three quarters of the bits, and five eighths of the difference of gradients. What saturates
+// before it is divided is far above the cap.
 class WithGradients {
 public:
     WithGradients(const CostRow& row, const std::uint8_t* left, const std::uint8_t* right)
@@ -152,9 +155,11 @@ public:
     {
         const Sample<D> gradient(d, left_, row_.left_pitch);
         const auto difference = gradient.difference(d, right_ + at, row_.right_pitch);
-        const auto sum = hn::Add(bits, hn::Add(difference, bits));
-        const auto quarter = hn::ShiftRight<2>(hn::Add(sum, hn::Add(bits, difference)));
-        return hn::Min(quarter, hn::Set(d, std::uint8_t{59}));
+        const auto of_bits = hn::Add(hn::Add(bits, bits), bits);
+        const auto of_gradients =
+            hn::Add(hn::Add(difference, difference), hn::ShiftRight<1>(difference));
+        const auto cost = hn::ShiftRight<2>(hn::SaturatedAdd(of_bits, of_gradients));
+        return hn::Min(cost, hn::Set(d, std::uint8_t{59}));
     }
 
 private:

@@ -42,11 +42,10 @@ void write_tones(const Patch<std::uint16_t>& image, Tone tone, int plane, Featur
     }
 }
 
-// The tolerance of a census in the values of an image.
+// The tolerance of a census: one tone, in the values of an image.
 int tolerance(Cost cost, Tone tone)
 {
-    constexpr int kTones = 2;
-    return cost == Cost::ternary5x5 ? (kTones * (tone.hi - tone.lo) + 127) / 255 : 0;
+    return cost == Cost::ternary5x5 ? (tone.hi - tone.lo + 127) / 255 : 0;
 }
 
 int census_planes(Cost cost)
