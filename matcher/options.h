@@ -15,7 +15,18 @@ enum class Mode {
     local,      ///< windows on their own, with an overlap
 };
 
-enum class Cost { census5x5, census7x7, census9x7, hmi };
+/// Matching costs; see docs/algorithm.md, section 3.
+enum class Cost {
+    census5x5,
+    census7x7,
+    census9x7,
+    pairs5x5,          ///< census of touching pixels
+    ternary5x5,        ///< census with a tolerance
+    census_ad,         ///< census5x5 and the difference of tones
+    pairs_bt,          ///< pairs5x5 and the difference of gradients, insensitive to sampling
+    birchfield_tomasi, ///< differences of gradients and tones, insensitive to sampling
+    hmi,               ///< hierarchical mutual information
+};
 
 /// What fractions of a pixel are read from.
 enum class Subpixel {
