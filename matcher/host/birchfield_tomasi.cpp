@@ -71,8 +71,8 @@ void sum_row(const CostRow& row, int before, int after, std::uint8_t* difference
         add_three(here, here, count == 1 && after == 0 ? here : here + stride, stride, sums);
     }
     if (first < last) {
-        add_three(here + (first - 1) * stride, here + first * stride, here + (first + 1) * stride,
-                  (last - first) * stride, sums + first * stride);
+        add_three(here + (first - 1) * stride, here + first * stride,
+                  here + (first + 1) * stride, (last - first) * stride, sums + first * stride);
     }
     if (last < count && last >= first) {
         const std::uint8_t* end = here + last * stride;

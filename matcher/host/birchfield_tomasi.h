@@ -26,7 +26,6 @@ void difference_sums(const CostRow& row, int before, int after, std::uint8_t* di
                      std::uint8_t* sums);
 
 /// Costs from the sums of three rows.
-void block_costs(const std::uint8_t* const (&sums)[3], const CostRow& row,
-                 std::uint8_t* costs);
+void block_costs(const std::uint8_t* const (&sums)[3], const CostRow& row, std::uint8_t* costs);
 
 } // namespace hsgm::matcher::host

@@ -199,11 +199,10 @@ void gradients(const tiling::Patch<std::uint16_t>& image, tiling::Size full, Ton
                int plane, bool tones, FeaturePlanes& out)
 {
     const GradientWork work{image, full, tone, plane, tones, out};
-    tbb::parallel_for(
-        tbb::blocked_range<int>(out.rect().row, out.rect().row_end(), 64),
-        [&](const tbb::blocked_range<int>& rows) {
-            HWY_DYNAMIC_DISPATCH(gradient_rows)(work, rows.begin(), rows.end());
-        });
+    tbb::parallel_for(tbb::blocked_range<int>(out.rect().row, out.rect().row_end(), 64),
+                      [&](const tbb::blocked_range<int>& rows) {
+                          HWY_DYNAMIC_DISPATCH(gradient_rows)(work, rows.begin(), rows.end());
+                      });
 }
 
 } // namespace hsgm::matcher::host

@@ -131,8 +131,7 @@ public:
         const auto right = hn::LoadU(d, right_ + at);
         const auto difference =
             hn::Or(hn::SaturatedSub(left, right), hn::SaturatedSub(right, left));
-        const auto half =
-            hn::ShiftRight<1>(hn::Min(difference, hn::Set(d, std::uint8_t{24})));
+        const auto half = hn::ShiftRight<1>(hn::Min(difference, hn::Set(d, std::uint8_t{24})));
         return hn::Min(hn::Add(hn::Add(bits, bits), half), hn::Set(d, std::uint8_t{59}));
     }
 

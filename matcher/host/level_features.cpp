@@ -105,8 +105,8 @@ LevelFeatures level_features(const LevelImages& images, const LevelPlan& plan, i
     f.left_tone = tones(images.left, pair.left_tone);
     f.low_texture = low_texture(images.left, f.left_tone, aggregation);
     // A cost that looks at its neighbours' differences needs features of these, too.
-    const Rect left = intersect(expand(aggregation, cost_block_radius(options.cost)),
-                                rect_of(f.left_size));
+    const Rect left =
+        intersect(expand(aggregation, cost_block_radius(options.cost)), rect_of(f.left_size));
     const Rect right = intersect(right_reach(left, plan.ranges[k]), rect_of(f.right_size));
     f.left = cost_planes(images.left, f.left_size, left, pair.left_tone, options.cost, false);
     f.right =

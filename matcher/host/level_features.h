@@ -17,8 +17,8 @@ struct LevelFeatures {
     const LevelImages* images = nullptr;
     tiling::Patch<std::uint8_t> left_tone;
     tiling::Patch<std::uint8_t> low_texture;
-    FeaturePlanes left;  ///< what the matching cost reads
-    FeaturePlanes right; ///< the same, mirrored
+    FeaturePlanes left;       ///< what the matching cost reads
+    FeaturePlanes right;      ///< the same, mirrored
     std::uint64_t number = 0; ///< another one for every call of level_features
 };
 
