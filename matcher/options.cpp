@@ -17,10 +17,15 @@ constexpr std::array<std::pair<Mode, std::string_view>, 4> kModes{{
     {Mode::local, "local"},
 }};
 
-constexpr std::array<std::pair<Cost, std::string_view>, 4> kCosts{{
+constexpr std::array<std::pair<Cost, std::string_view>, 9> kCosts{{
     {Cost::census5x5, "census5x5"},
     {Cost::census7x7, "census7x7"},
     {Cost::census9x7, "census9x7"},
+    {Cost::pairs5x5, "pairs5x5"},
+    {Cost::ternary5x5, "ternary5x5"},
+    {Cost::census_ad, "census_ad"},
+    {Cost::pairs_bt, "pairs_bt"},
+    {Cost::birchfield_tomasi, "birchfield_tomasi"},
     {Cost::hmi, "hmi"},
 }};
 
@@ -172,6 +177,14 @@ CostTraits traits(Cost cost)
         return {48, 3, 3};
     case Cost::census9x7:
         return {59, 3, 4};
+    case Cost::ternary5x5:
+        return {48, 2, 2};
+    case Cost::pairs5x5:
+    case Cost::census_ad:
+    case Cost::pairs_bt:
+        return {59, 2, 2};
+    case Cost::birchfield_tomasi:
+        return {58, 2, 3};
     case Cost::hmi:
         return {48, 0, 0};
     }

@@ -15,7 +15,18 @@ enum class Mode {
     local,      ///< windows on their own, with an overlap
 };
 
-enum class Cost { census5x5, census7x7, census9x7, hmi };
+/// Matching costs; see docs/algorithm.md, section 3.
+enum class Cost {
+    census5x5,
+    census7x7,
+    census9x7,
+    pairs5x5,          ///< census of touching pixels
+    ternary5x5,        ///< census with a tolerance
+    census_ad,         ///< census5x5 and the difference of tones
+    pairs_bt,          ///< pairs5x5 and the difference of gradients, insensitive to sampling
+    birchfield_tomasi, ///< differences of gradients and tones, insensitive to sampling
+    hmi,               ///< hierarchical mutual information
+};
 
 /// What fractions of a pixel are read from.
 enum class Subpixel {
@@ -48,7 +59,7 @@ struct Options {
     int speckle_range_px = 1; ///< neighbours of one segment differ by this at most, 1..64
     Subpixel subpixel = Subpixel::census;
     int min_confidence = 128; ///< values trusted less are taken away, 0..255
-    int median = 3;         ///< side of the median filter: 3 or 5; 1 = off
+    int median = 3;           ///< side of the median filter: 3 or 5; 1 = off
     Fill fill = Fill::none;
     int fill_px = 32; ///< how far a hole looks for values to close it, 1..256
 

@@ -20,7 +20,9 @@ matcher::Options read_matcher(ConfigSection section)
     o.mode = matcher::mode_from_name(
         section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
     o.cost = matcher::cost_from_name(
-        section.choice("cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
+        section.choice("cost", "census7x7",
+                       {"census5x5", "census7x7", "census9x7", "pairs5x5", "ternary5x5",
+                        "census_ad", "pairs_bt", "birchfield_tomasi", "hmi"}));
     o.paths =
         std::stoi(section.choice("paths", std::to_string(o.paths), {"4", "5", "8", "16"}));
     o.levels = section.integer_or("levels", "auto", std::nullopt, 1, 12).value_or(0);

@@ -38,17 +38,18 @@ Image<T> rendered(tiling::Size size, Render render)
 }
 
 // All pixels of a source, and how often each value occurs.
-Image<std::uint16_t> read_image(io::RasterSource& source, const pipeline::PixelMapping& mapping,
+Image<std::uint16_t> read_image(pipeline::PixelSource& source,
+                                const pipeline::PixelMapping& mapping,
                                 pipeline::PixelHistogram& histogram)
 {
-    const int rows = pipeline::strip_rows(source);
-    const int cols = source.size().cols;
     Image<std::uint16_t> image(source.size());
-    Image<double> values({rows, cols});
-    for (int row = 0; row < image.rows(); row += rows) {
-        const Rect strip{row, 0, std::min(rows, image.rows() - row), cols};
-        source.read(strip, values.view().part({0, 0, strip.rows, cols}));
-        std::transform(values.data(), values.data() + strip.area(), image.row(row), mapping);
+    for (const Rect& window : source.reading_windows()) {
+        Image<double> values(window.size());
+        source.read(window, values);
+        for (int r = 0; r < window.rows; ++r) {
+            std::transform(values.row(r), values.row(r) + window.cols,
+                           image.row(window.row + r) + window.col, mapping);
+        }
     }
     for (const std::uint16_t pixel : image.pixels()) {
         ++histogram[pixel];
@@ -111,8 +112,8 @@ BenchPair render_pair(const std::string& name, int side_px, int disparities)
 BenchPair read_pair(const std::string& left, const std::string& right,
                     tiling::DisparityRange asked)
 {
-    io::RasterSource left_source(io::ImageSpec{left});
-    io::RasterSource right_source(io::ImageSpec{right});
+    pipeline::FileSource left_source(io::RasterSource(io::ImageSpec{left}));
+    pipeline::FileSource right_source(io::RasterSource(io::ImageSpec{right}));
     const auto mapping = pipeline::find_mapping(left_source, right_source);
     BenchPair pair;
     pair.source = left + ", " + right;
