@@ -14,10 +14,14 @@
 
 namespace hsgm::matcher {
 
-/// Largest addition of the gated prior to a matching cost.
-constexpr int kPriorMax = 4;
 /// The coarser level's normalised sums are capped at this before they become the prior.
 constexpr int kPriorCap = 16;
+/// The prior is divided by two to the power of this before it joins a matching cost...
+constexpr int kPriorShift = 2;
+/// ... and where there is texture by this.
+constexpr int kPriorShiftTextured = 4;
+/// Largest addition of the prior to a matching cost.
+constexpr int kPriorMax = kPriorCap >> kPriorShift;
 /// A 7 x 7 neighbourhood whose tones span less than this counts as low texture.
 constexpr int kTextureGate = 7;
 /// How much dearer than P2 a coarse disparity is that was never searched.
