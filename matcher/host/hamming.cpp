@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 // After Highway: compiled once for every target.
 #include "matcher/host/cost_row-inl.h"
+#include "matcher/host/sampling-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hsgm::matcher::host::HWY_NAMESPACE {
@@ -31,9 +32,10 @@ HWY_INLINE hn::Vec<D> count_bits(D d, hn::Vec<D> bytes)
 #endif
 }
 
-// Counts the bits in which `planes` bytes of a left pixel differ from those of right ones;
-// `Weight` makes a cost of the number. (Were the number of planes known to the compiler, it
-// would unroll the loop and add up what it then cannot keep in registers.)
+// Counts the bits in which `planes` bytes of a left pixel differ from those of right ones. A
+// Weight makes a cost of the number, and of what the planes after these hold. (Were the number
+// of planes known to the compiler, it would unroll the loop and add up what it then cannot
+// keep in registers.)
 template <class Weight>
 class Hamming {
 public:
@@ -61,13 +63,14 @@ public:
                 sum3 = hn::Add(sum3, differing(d, byte, right + 3 * lanes));
             }
         }
-        writer.write(d, at, Weight::cost(d, sum0));
+        const Weight weight(row_, left, right);
+        writer.write(d, at, weight.cost(d, sum0, 0));
         if constexpr (kVectors >= 2) {
-            writer.write(d, at + lanes, Weight::cost(d, sum1));
+            writer.write(d, at + lanes, weight.cost(d, sum1, lanes));
         }
         if constexpr (kVectors == 4) {
-            writer.write(d, at + 2 * lanes, Weight::cost(d, sum2));
-            writer.write(d, at + 3 * lanes, Weight::cost(d, sum3));
+            writer.write(d, at + 2 * lanes, weight.cost(d, sum2, 2 * lanes));
+            writer.write(d, at + 3 * lanes, weight.cost(d, sum3, 3 * lanes));
         }
     }
 
@@ -83,16 +86,20 @@ private:
 };
 
 struct Once {
+    Once(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
     template <class D>
-    static HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits)
+    HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits, std::size_t) const
     {
         return bits;
     }
 };
 
 struct Twice {
+    Twice(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
     template <class D>
-    static HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits)
+    HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits, std::size_t) const
     {
         return hn::Add(bits, bits);
     }
@@ -100,11 +107,64 @@ struct Twice {
 
 template <int kMost>
 struct AtMost {
+    AtMost(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
     template <class D>
-    static HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits)
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t) const
     {
         return hn::Min(bits, hn::Set(d, std::uint8_t{kMost}));
     }
+};
+
+// Twice the bits, and half the difference of tones as far as that goes.
+class WithTones {
+public:
+    WithTones(const CostRow&, const std::uint8_t* left, const std::uint8_t* right)
+        : left_(*left), right_(right)
+    {
+    }
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t at) const
+    {
+        const auto left = hn::Set(d, left_);
+        const auto right = hn::LoadU(d, right_ + at);
+        const auto difference =
+            hn::Or(hn::SaturatedSub(left, right), hn::SaturatedSub(right, left));
+        const auto half = hn::ShiftRight<1>(hn::Min(difference, hn::Set(d, std::uint8_t{24})));
+        return hn::Min(hn::Add(hn::Add(bits, bits), half), hn::Set(d, std::uint8_t{59}));
+    }
+
+private:
+    std::uint8_t left_;
+    const std::uint8_t* right_;
+};
+
+// Three quarters of the bits, and five eighths of the difference of gradients. What saturates
+// before it is divided is far above the cap.
+class WithGradients {
+public:
+    WithGradients(const CostRow& row, const std::uint8_t* left, const std::uint8_t* right)
+        : row_(row), left_(left), right_(right)
+    {
+    }
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t at) const
+    {
+        const Sample<D> gradient(d, left_, row_.left_pitch);
+        const auto difference = gradient.difference(d, right_ + at, row_.right_pitch);
+        const auto of_bits = hn::Add(hn::Add(bits, bits), bits);
+        const auto of_gradients =
+            hn::Add(hn::Add(difference, difference), hn::ShiftRight<1>(difference));
+        const auto cost = hn::ShiftRight<2>(hn::SaturatedAdd(of_bits, of_gradients));
+        return hn::Min(cost, hn::Set(d, std::uint8_t{59}));
+    }
+
+private:
+    const CostRow& row_;
+    const std::uint8_t* left_;
+    const std::uint8_t* right_;
 };
 
 void census5x5_row(const CostRow& row, std::uint8_t* costs)
@@ -112,14 +172,24 @@ void census5x5_row(const CostRow& row, std::uint8_t* costs)
     fill_row(row, Hamming<Twice>(row, 3), costs);
 }
 
-void census7x7_row(const CostRow& row, std::uint8_t* costs)
+void six_planes_row(const CostRow& row, std::uint8_t* costs)
 {
     fill_row(row, Hamming<Once>(row, 6), costs);
 }
 
-void census9x7_row(const CostRow& row, std::uint8_t* costs)
+void eight_planes_row(const CostRow& row, std::uint8_t* costs)
 {
     fill_row(row, Hamming<AtMost<59>>(row, 8), costs);
+}
+
+void census_ad_row(const CostRow& row, std::uint8_t* costs)
+{
+    fill_row(row, Hamming<WithTones>(row, 3), costs);
+}
+
+void pairs_bt_row(const CostRow& row, std::uint8_t* costs)
+{
+    fill_row(row, Hamming<WithGradients>(row, 8), costs);
 }
 
 } // namespace hsgm::matcher::host::HWY_NAMESPACE
@@ -129,8 +199,10 @@ HWY_AFTER_NAMESPACE();
 namespace hsgm::matcher::host {
 
 HWY_EXPORT(census5x5_row);
-HWY_EXPORT(census7x7_row);
-HWY_EXPORT(census9x7_row);
+HWY_EXPORT(six_planes_row);
+HWY_EXPORT(eight_planes_row);
+HWY_EXPORT(census_ad_row);
+HWY_EXPORT(pairs_bt_row);
 
 void hamming_costs(Cost cost, const CostRow& row, std::uint8_t* costs)
 {
@@ -138,9 +210,15 @@ void hamming_costs(Cost cost, const CostRow& row, std::uint8_t* costs)
     case Cost::census5x5:
         return HWY_DYNAMIC_DISPATCH(census5x5_row)(row, costs);
     case Cost::census7x7:
-        return HWY_DYNAMIC_DISPATCH(census7x7_row)(row, costs);
+    case Cost::ternary5x5: // 48 bits both
+        return HWY_DYNAMIC_DISPATCH(six_planes_row)(row, costs);
     case Cost::census9x7:
-        return HWY_DYNAMIC_DISPATCH(census9x7_row)(row, costs);
+    case Cost::pairs5x5: // 62 and 64 bits
+        return HWY_DYNAMIC_DISPATCH(eight_planes_row)(row, costs);
+    case Cost::census_ad:
+        return HWY_DYNAMIC_DISPATCH(census_ad_row)(row, costs);
+    case Cost::pairs_bt:
+        return HWY_DYNAMIC_DISPATCH(pairs_bt_row)(row, costs);
     default:
         throw std::logic_error("hamming_costs: no census cost");
     }
