@@ -57,7 +57,8 @@ std::uint32_t penalty_of_jump(const LevelPair& pair, int row, int col, int row_b
     const int here = pair.tone_left(row, col);
     if (options.mode != Mode::hsgm_paper) {
         const int before = pair.tone_left(row_before, col_before);
-        return gradient_penalty(options.p1, options.p2, std::abs(here - before));
+        return gradient_penalty(options.p1, options.p2, options.p2_half_tone,
+                                std::abs(here - before));
     }
     const int before = entering ? coarser->pair.tone_left(row_before / 2, col_before / 2)
                                 : pair.tone_left(row_before, col_before);
