@@ -95,5 +95,7 @@ TEST_CASE("modes and costs are found by their names")
     CHECK_THROWS_WITH(mode_from_name("SGM"),
                       "mode must be one of hsgm, hsgm-paper, sgm, local, not 'SGM'");
     CHECK_THROWS_WITH(cost_from_name("census"),
-                      Catch::Matchers::Contains("census5x5, census7x7, census9x7, pairs5x5"));
+                      Catch::Matchers::Contains("census5x5, census7x7, census9x7, pairs5x5, "
+                                                "ternary5x5, census_ad, pairs_bt, "
+                                                "birchfield_tomasi, hmi"));
 }

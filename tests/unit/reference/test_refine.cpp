@@ -50,3 +50,16 @@ TEST_CASE("the twin's median passes over pixels without a value")
     const auto column = image_of<std::int32_t>({{5}, {1}, {9}});
     CHECK(median_of_valid(column, pixels({{0}, {0}, {0}}), 1, 0, 3) == 5);
 }
+
+TEST_CASE("the twin's mean is that of one surface, rounded to the nearest")
+{
+    Surface surface;
+    surface.q8 = image_of<std::int32_t>({{-1024, -1020, -767, -768, 5000}});
+    surface.has_value = image_of<std::uint8_t>({{1, 1, 1, 0, 1}});
+    CHECK(mean_of_near(surface, 0, 0, 1) == -1024);
+    CHECK(mean_of_near(surface, 0, 0, 3) == -1022);
+    CHECK(mean_of_near(surface, 0, 0, 5) == -1022); // the third is 257 away
+    CHECK(mean_of_near(surface, 0, 1, 5) == -937);  // -2811 / 3
+    CHECK(mean_of_near(surface, 0, 2, 3) == -893);  // -893.5
+    CHECK(mean_of_near(surface, 0, 4, 5) == 5000);
+}
