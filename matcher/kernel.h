@@ -29,8 +29,8 @@ constexpr int kUnsearchedMargin = 24;
 /// Right-view key of a right pixel that no left pixel met.
 constexpr std::uint32_t kNoKey = 0xFFFFFFFFU;
 
-/// P2 by the tone difference `a` along the path, gradient rule: p2 at 0, falling to p1, half-way
-/// there at `half`.
+/// P2 by the tone difference `a` along the path, gradient rule: p2 at 0, falling to p1,
+/// half-way there at `half`.
 HSGM_HOST_DEVICE constexpr int p2_gradient(int p1, int p2, int half, int a)
 {
     return p1 + (p2 - p1) * half / (half + a);

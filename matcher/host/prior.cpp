@@ -22,8 +22,8 @@ struct Adding {
     using D16 = hn::Repartition<std::uint16_t, D>;
     using Half = hn::Rebind<std::uint8_t, D16>;
 
-    // Prior of the disparities 2j and 2j + 1 above the first, or, beginning with an odd one, the
-    // other way round, in one 16-bit lane each.
+    // Prior of the disparities 2j and 2j + 1 above the first, or, beginning with an odd one,
+    // the other way round, in one 16-bit lane each.
     static HWY_INLINE hn::Vec<D16> spread(const std::uint8_t* HWY_RESTRICT q)
     {
         const D16 d16;
@@ -51,8 +51,7 @@ struct Adding {
                                   std::uint8_t* HWY_RESTRICT costs)
     {
         const int shift = low_texture[0] != 0 ? kPriorShift : kPriorShiftTextured;
-        const int next_shift =
-            low_texture[count - 1] != 0 ? kPriorShift : kPriorShiftTextured;
+        const int next_shift = low_texture[count - 1] != 0 ? kPriorShift : kPriorShiftTextured;
         for (int i = 0; i < stride; i += static_cast<int>(hn::Lanes(D()))) {
             const auto prior = spread(q + i / 2);
             add(prior, shift, costs + i);
@@ -128,8 +127,7 @@ namespace hsgm::matcher::host {
 
 HWY_EXPORT(add_to_pixels);
 
-void add_prior(const PriorRun& run, std::uint8_t* costs, int stride,
-               Buffer<std::uint8_t>& room)
+void add_prior(const PriorRun& run, std::uint8_t* costs, int stride, Buffer<std::uint8_t>& room)
 {
     constexpr std::size_t kBeyond = 66; // whole vectors are read
     std::uint8_t* q = room.need(static_cast<std::size_t>(stride) / 2 + kBeyond);

@@ -35,8 +35,9 @@ void smooth_row(const std::int32_t* HWY_RESTRICT centre, std::ptrdiff_t stride, 
                 count = hn::Sub(count, hn::VecFromMask(d, near));
             }
         }
-        // floor((2 sum + count) / (2 count)). Both are whole and below 2^15, and a quotient that
-        // is not whole is 1/50 or more away from being so: the rounded one has the same floor.
+        // floor((2 sum + count) / (2 count)). Both are whole and below 2^15, and a quotient
+        // that is not whole is 1/50 or more away from being so: the rounded one has the same
+        // floor.
         const auto twice = hn::ConvertTo(real, hn::Add(hn::Add(sum, sum), count));
         const auto mean = hn::Div(twice, hn::ConvertTo(real, hn::Add(count, count)));
         const auto value = hn::Add(own, hn::ConvertTo(d, hn::Floor(mean)));

@@ -266,12 +266,13 @@ std::string Case::describe() const
         << tone_right.hi << "], mode " << name(options.mode) << ", cost " << name(options.cost)
         << ", paths " << options.paths << ", levels " << options.levels << ", window "
         << options.window_px << ", halo " << options.halo_px << ", p1 " << options.p1 << ", p2 "
-        << options.p2 << ", p2_half_tone " << options.p2_half_tone << ", prior " << options.prior << ", prune " << options.prune
-        << ", left_right_px " << options.left_right_px << ", speckle_px " << options.speckle_px
+        << options.p2 << ", p2_half_tone " << options.p2_half_tone << ", prior "
+        << options.prior << ", prune " << options.prune << ", left_right_px "
+        << options.left_right_px << ", speckle_px " << options.speckle_px
         << ", speckle_range_px " << options.speckle_range_px << ", subpixel "
         << name(options.subpixel) << ", min_confidence " << options.min_confidence
-        << ", median " << options.median << ", smooth " << options.smooth << ", fill " << name(options.fill) << ", fill_px "
-        << options.fill_px << ", tiles";
+        << ", median " << options.median << ", smooth " << options.smooth << ", fill "
+        << name(options.fill) << ", fill_px " << options.fill_px << ", tiles";
     for (const Rect& tile : tiles) {
         out << " " << tile;
     }
