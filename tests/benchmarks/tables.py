@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-RAW = ["matcher.left_right_px=off", "matcher.median=1"]
+RAW = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.subpixel=sums", "matcher.median=off"]
 PATHS = {}
 
 
