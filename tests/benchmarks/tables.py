@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints the quality and memory tables of docs/benchmarks.md as Markdown.
 
-    tests/benchmarks/tables.py [--hsgm build/hsgm] [--data ../shared/data] [seams|middlebury|peers|memory ...]
+    tests/benchmarks/tables.py [--hsgm build/hsgm] [--data ../shared/data] [seams|middlebury|peers|costs|memory ...]
 
 Needs the program and, but for `seams` and `memory`, the data folder of real pairs. Quality
 does not depend on the machine; memory hardly does.
@@ -167,6 +167,28 @@ def peers(folder):
     print()
 
 
+COSTS = ["census5x5", "census7x7", "census9x7", "pairs5x5", "ternary5x5", "census_ad", "pairs_bt",
+         "birchfield_tomasi", "hmi"]
+
+
+def costs(folder):
+    print("### Matching costs\n")
+    made = os.path.join(folder, "city")
+    run("synth", os.path.join(PATHS["configs"], "scene-city.yaml"), "-o", made)
+    answered = RAW[:-1] + ["matcher.median=3"]
+    scenes = [(scene, 1) for scene in CLASSICS + OTHERS] + [(scene, 3) for scene in COARSE]
+    header("cost", *[scene[0] for scene, _ in scenes], "noisy city")
+    for cost in COSTS:
+        settings = answered + [f"matcher.cost={cost}"]
+        values = [bad(score_scene(scene, settings, folder, limit), limit) for scene, limit in scenes]
+        test = os.path.join(folder, "city.tif")
+        match(os.path.join(made, "left.tif"), os.path.join(made, "right.tif"), "-8,56", settings, test)
+        values.append(bad(score(test, os.path.join(made, "truth_left.tif"), "--mask",
+                                os.path.join(made, "visible_left.tif")), 1))
+        row(cost, *[f"{v:.2f}" for v in values])
+    print()
+
+
 def peak_mebibytes(arguments):
     # A shell of its own, since a parent's maximum is over all children it ever had.
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
@@ -195,7 +217,8 @@ def memory(folder):
     print()
 
 
-TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "memory": memory}
+TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "costs": costs,
+          "memory": memory}
 
 
 def main():
