@@ -116,6 +116,14 @@ private:
     std::string name_;
 };
 
+/// A key with the value in force.
+struct ConfigValue {
+    std::string name; ///< "matcher.cost"; items of a list by number, "pairs.0.left"
+    std::string text;
+    bool is_file = false;  ///< an absolute path
+    bool is_image = false; ///< of an image
+};
+
 /// A configuration file: YAML with relative paths from its own folder. Use it in this order:
 /// load, `set` the overrides, read everything through `root`, `refuse_unknown`.
 class ConfigDocument {
@@ -140,6 +148,8 @@ public:
     void refuse_unknown() const;
     /// Everything that was read, defaults included, as YAML; paths are absolute.
     std::string effective_yaml() const;
+    /// The same as a list.
+    std::vector<ConfigValue> effective_values() const;
     const std::filesystem::path& folder() const;
 
 private:

@@ -162,6 +162,7 @@ std::string ConfigSection::note_path(const std::string& key, const std::string& 
     const std::string resolved = resolve(written);
     const bool ours = !is_virtual_path(resolved) && !has_driver_prefix(resolved);
     record(key, ours ? std::filesystem::absolute(resolved).string() : resolved, "");
+    effective_->at(key).is_file = true;
     return resolved;
 }
 
@@ -194,10 +195,12 @@ ImageSpec ConfigSection::image(const std::string& key)
     ImageSpec spec;
     if (node->kind == ConfigNode::Kind::scalar) {
         spec.path = path(key);
+        effective_->at(key).is_image = true;
         return spec;
     }
     ConfigSection part = section(key);
     spec.path = part.path("path");
+    part.effective_->at("path").is_image = true;
     spec.band = part.integer_or("band", "auto", std::nullopt, 1).value_or(0);
     if (part.has("nodata")) {
         spec.nodata =

@@ -14,6 +14,7 @@ enum Reason : std::uint16_t {
     kNodataRight = 1 << 2,  ///< its counterpart is nodata
     kOccluded = 1 << 3,     ///< not seen in the right image (left-right check)
     kInconsistent = 1 << 4, ///< left and right view disagree (mismatch)
+    kFailedTile = 1 << 7,   ///< its tile could not be matched; the run's ledger says why
     // Bits from 8 on inform about a pixel that may well have a value.
     kLowTexture = 1 << 8, ///< flat neighbourhood: the value leans on what lies around it
     kRangeEnd = 1 << 9,   ///< the first or last disparity asked for: the truth may lie beyond
@@ -23,12 +24,13 @@ enum Reason : std::uint16_t {
 constexpr std::uint16_t kInvalidating = 0x00FF;
 
 /// Bit and name of every reason, for metadata and documentation.
-constexpr std::array<std::pair<Reason, std::string_view>, 7> kReasonNames{{
+constexpr std::array<std::pair<Reason, std::string_view>, 8> kReasonNames{{
     {kOutside, "outside"},
     {kNodataLeft, "nodata_left"},
     {kNodataRight, "nodata_right"},
     {kOccluded, "occluded"},
     {kInconsistent, "inconsistent"},
+    {kFailedTile, "failed_tile"},
     {kLowTexture, "low_texture"},
     {kRangeEnd, "range_end"},
 }};

@@ -22,13 +22,14 @@ using tiling::Patch;
 using tiling::Rect;
 using tiling::Size;
 
-std::vector<Raster> make_levels(const std::filesystem::path& folder, const std::string& name,
-                                const std::vector<Size>& sizes)
+std::vector<Raster> open_levels(const std::filesystem::path& folder, const std::string& name,
+                                const std::vector<Size>& sizes, io::ScratchLife life)
 {
     std::vector<Raster> levels;
     levels.reserve(sizes.size());
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-        levels.emplace_back(folder, name + std::to_string(k) + ".raw", sizes[k]);
+        levels.emplace_back(folder, name + std::to_string(k) + ".raw", sizes[k],
+                            std::uint16_t{0}, life);
     }
     return levels;
 }
@@ -106,13 +107,35 @@ Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
 PreparedPair::PreparedPair(io::RasterSource& left, io::RasterSource& right, int levels,
                            const std::filesystem::path& scratch_folder)
 {
+    const auto life = io::ScratchLife::kept;
     left_.levels =
-        make_levels(scratch_folder, "left", tiling::pyramid_sizes(left.size(), levels));
+        open_levels(scratch_folder, "left", tiling::pyramid_sizes(left.size(), levels), life);
     right_.levels =
-        make_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels));
+        open_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels), life);
     const PixelMapping mapping = find_mapping(left, right);
     tbb::parallel_invoke([&] { left_.tone = fill(left, mapping, left_.levels); },
                          [&] { right_.tone = fill(right, mapping, right_.levels); });
+}
+
+PreparedPair::PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,
+                           const std::filesystem::path& scratch_folder)
+{
+    const auto life = io::ScratchLife::existing;
+    left_ = {
+        open_levels(scratch_folder, "left", tiling::pyramid_sizes(shape.left, levels), life),
+        tones.left};
+    right_ = {
+        open_levels(scratch_folder, "right", tiling::pyramid_sizes(shape.right, levels), life),
+        tones.right};
+}
+
+void PreparedPair::sync()
+{
+    for (Pyramid* pyramid : {&left_, &right_}) {
+        for (Raster& level : pyramid->levels) {
+            level.sync();
+        }
+    }
 }
 
 matcher::LevelImages PreparedPair::read(int level, const tiling::LevelSupport& support) const
