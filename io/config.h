@@ -58,6 +58,8 @@ public:
     std::vector<double> numbers(const std::string& key, std::size_t count = 0);
 
     bool flag(const std::string& key, bool default_value);
+    /// What is written for a key, as YAML, whatever it is; empty where it is missing.
+    std::string yaml(const std::string& key);
     /// One of the words in `allowed`.
     std::string choice(const std::string& key, const std::string& default_value,
                        const std::vector<std::string>& allowed);
@@ -142,6 +144,9 @@ public:
     void set(const std::string& dotted, const std::string& yaml_value);
     /// The same from one text "KEY=VALUE".
     void set(const std::string& assignment);
+
+    /// Whether the file, with what was set, has a plain value at a dotted path.
+    bool is_scalar(const std::string& dotted) const;
 
     ConfigSection root();
     /// Throws ConfigError for the first key that nothing asked for, with the nearest known.

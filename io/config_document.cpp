@@ -198,6 +198,15 @@ void ConfigDocument::set(const std::string& assignment)
     set(assignment.substr(0, equals), assignment.substr(equals + 1));
 }
 
+bool ConfigDocument::is_scalar(const std::string& dotted) const
+{
+    const ConfigNode* node = state_->given.get();
+    for (const std::string& part : split_path(dotted)) {
+        node = node == nullptr ? nullptr : node->find(part);
+    }
+    return node != nullptr && node->kind == ConfigNode::Kind::scalar;
+}
+
 ConfigSection ConfigDocument::root()
 {
     return ConfigSection(state_, state_->given.get(), &state_->effective, "");

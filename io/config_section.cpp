@@ -123,6 +123,17 @@ void ConfigSection::record(const std::string& key, const std::string& value,
     node.default_text = value == default_value ? "" : default_value;
 }
 
+std::string ConfigSection::yaml(const std::string& key)
+{
+    const ConfigNode* node = find(key);
+    if (node == nullptr) {
+        return "";
+    }
+    std::string text = to_yaml(*node);
+    text.erase(text.find_last_not_of('\n') + 1);
+    return text;
+}
+
 std::string ConfigSection::name_of(const std::string& key) const
 {
     return name_.empty() || key.empty() ? name_ + key : name_ + "." + key;

@@ -1,6 +1,7 @@
 #include "io/error.h"
 #include "io/gdal_session.h"
 #include "pipeline/budget.h"
+#include "pipeline/commands/batch_command.h"
 #include "pipeline/commands/evaluate_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
@@ -105,6 +106,7 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_match_command(app);
     hsgm::pipeline::add_run_command(app);
     hsgm::pipeline::add_plan_command(app);
+    hsgm::pipeline::add_batch_command(app);
     hsgm::pipeline::add_status_command(app);
     hsgm::pipeline::add_report_command(app);
     hsgm::pipeline::add_evaluate_command(app);
