@@ -2,6 +2,7 @@
 #include "io/gdal_session.h"
 #include "pipeline/budget.h"
 #include "pipeline/commands/batch_command.h"
+#include "pipeline/commands/bench_command.h"
 #include "pipeline/commands/evaluate_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
@@ -9,6 +10,7 @@
 #include "pipeline/commands/synth_command.h"
 #include "pipeline/commands/usage.h"
 #include "pipeline/error.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/run_log.h"
 
 #include <CLI/CLI.hpp>
@@ -85,6 +87,7 @@ int run(CLI::App& app, int argc, char** argv)
 
 int main(int argc, char** argv)
 {
+    hsgm::pipeline::keep_freed_memory();
     // Results go to standard output, everything about them to standard error.
     std::string log_level = "info";
     bool log_json = false;
@@ -112,5 +115,6 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_evaluate_command(app);
     hsgm::pipeline::add_synth_command(app);
     hsgm::pipeline::add_info_command(app);
+    hsgm::pipeline::add_bench_command(app);
     return run(app, argc, argv);
 }

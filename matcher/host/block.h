@@ -8,6 +8,7 @@
 #include "matcher/host/sweep.h"
 #include "matcher/host/tile_output.h"
 #include "matcher/host/window_paths.h"
+#include "matcher/host/work_counter.h"
 
 #include <optional>
 
@@ -22,10 +23,11 @@ struct LevelJob {
     tiling::DisparityRange range;                              ///< of the level
     const LevelResult<L>* coarser = nullptr;                   ///< null at the coarsest level
     const tiling::Patch<std::uint8_t>* coarser_tone = nullptr; ///< for eq. 3
-    const PenaltyMaps* penalties = nullptr; ///< where `solves_by_passes`
+    const PenaltyMaps* penalties = nullptr;                    ///< where `solves_by_passes`
     bool whole = false;      ///< one block: the image; its work is spread over the threads
     bool keep_lines = false; ///< a finer level starts its paths here
     bool keep_prior = false; ///< a finer level reads its prior here
+    WorkCounter* work = nullptr;
 };
 
 /// Buffers of one worker, reused from block to block.

@@ -50,7 +50,8 @@ public:
         const int cols = count(core.col, core.col_end(), direction.col);
         row_values_ = std::size_t(rows) * std::size_t(core.cols) * std::size_t(stride);
         values_.resize(row_values_ +
-                       std::size_t(cols) * std::size_t(core.rows) * std::size_t(stride));
+                       std::size_t(cols) * std::size_t(core.rows) * std::size_t(stride) +
+                       kReadBeyond);
     }
 
     bool holds_row(int row) const { return lines_.holds(row, direction_.row); }
@@ -69,6 +70,9 @@ public:
     const L* at(int row, int col) const { return values_.data() + index(row, col); }
 
 private:
+    /// Whole vectors are read at the end of the last pixel.
+    static constexpr std::size_t kReadBeyond = 16;
+
     int count(int begin, int end, int step) const
     {
         const int first = step == 0 ? end : lines_.first(begin, step);
@@ -97,8 +101,8 @@ private:
 template <typename L>
 struct BlockResult {
     tiling::Rect core;
-    tiling::DisparityRange range; ///< the disparities searched
-    int stride = 0;               ///< elements kept for a pixel: padded_count(range.count())
+    tiling::DisparityRange range;    ///< the disparities searched
+    int stride = 0;                  ///< elements kept for a pixel: padded_count(range.count())
     std::vector<std::uint8_t> prior; ///< q of every core pixel; empty where nobody reads it
     std::vector<LineStore<L>> lines; ///< one for each direction
 

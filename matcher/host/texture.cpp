@@ -208,11 +208,11 @@ Patch<std::uint8_t> low_texture(const Patch<std::uint16_t>& image,
 {
     Patch<std::uint8_t> result(area);
     const TextureWork work{image, tone, result};
-    tbb::parallel_for(
-        tbb::blocked_range<int>(area.row, area.row_end(), 64),
-        [&](const tbb::blocked_range<int>& rows) {
-            HWY_DYNAMIC_DISPATCH(low_texture_rows)(work, rows.begin(), rows.end());
-        });
+    tbb::parallel_for(tbb::blocked_range<int>(area.row, area.row_end(), 64),
+                      [&](const tbb::blocked_range<int>& rows) {
+                          HWY_DYNAMIC_DISPATCH(low_texture_rows)
+                          (work, rows.begin(), rows.end());
+                      });
     return result;
 }
 

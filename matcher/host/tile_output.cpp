@@ -24,6 +24,8 @@ TileOutput::TileOutput(const tiling::Rect& core, const LevelFeatures& features,
     result_.reasons = tiling::Image<std::uint16_t>(core.size());
     const auto seen = intersect(right_reach(core, pair.shape.asked), rect_of(pair.shape.right));
     result_.right_keys = tiling::Patch<std::uint32_t>(seen, kNoKey);
+    const auto right = features.images->right.pixels.pixels();
+    right_has_gaps_ = std::find(right.begin(), right.end(), kNodataPixel) != right.end();
 }
 
 void TileOutput::add(const BlockSums& sums, OutputWorkspace& workspace)
@@ -47,57 +49,45 @@ void TileOutput::add_part(const BlockSums& sums, int row, int col, int cols,
 {
     const SumsRow part{sums.at(row, col), cols, sums.stride, sums.range.count()};
     Winner* winners = workspace.winners.need(static_cast<std::size_t>(cols));
-    std::uint8_t* valid = workspace.valid.need(static_cast<std::size_t>(cols));
     find_winners(part, winners);
+    const int r = row - result_.core.row;
+    const int c = col - result_.core.col;
+    sum_results(part, winners, sums.range.min, workspace.results,
+                result_.disparity_q8.row(r) + c, result_.confidence.row(r) + c);
+    add_reasons(winners, sums.range.min, row, col, cols);
+    std::uint8_t* valid = workspace.valid.need(static_cast<std::size_t>(cols));
     const std::uint16_t* left = &features_.images->left.at(row, col);
-    for (int i = 0; i < cols; ++i) {
-        valid[i] = static_cast<std::uint8_t>(is_valid(left[i]));
-        add_pixel(part, i, winners[i], sums.range.min, row, col + i);
-    }
+    std::transform(left, left + cols, valid,
+                   [](std::uint16_t pixel) { return std::uint8_t(is_valid(pixel)); });
     workspace.candidates.clear(cols, sums.stride);
     workspace.candidates.merge(part, valid);
     merge_right(part, sums.range.min, row, col, workspace.candidates);
 }
 
-void TileOutput::add_pixel(const SumsRow& part, int i, const Winner& winner, int range_min,
-                           int row, int col)
-{
-    const int disparity = range_min + winner.index;
-    const bool inner = winner.index > 0 && winner.index + 1 < part.count;
-    const std::uint16_t* s = part.at(i);
-    const int r = row - result_.core.row;
-    const int c = col - result_.core.col;
-    result_.disparity_q8(r, c) =
-        inner ? subpixel_q8(disparity, sum_at(s, part.stride, winner.index - 1), winner.sum,
-                            sum_at(s, part.stride, winner.index + 1))
-              : disparity * 256;
-    result_.confidence(r, c) = static_cast<std::uint8_t>(
-        winner.rival < 0 ? 255 : confidence_of(winner.sum, winner.rival));
-    result_.reasons(r, c) = reasons_of(row, col, disparity);
-}
-
-std::uint16_t TileOutput::reasons_of(int row, int col, int winner) const
+void TileOutput::add_reasons(const Winner* winners, int range_min, int row, int col, int cols)
 {
     const auto asked = pair_.shape.asked;
     const int right_cols = pair_.shape.right.cols;
-    if (!is_valid(features_.images->left.at(row, col))) {
-        return kNodataLeft;
+    const std::uint16_t* left = &features_.images->left.at(row, col);
+    const std::uint8_t* low_texture = &features_.low_texture.at(row, col);
+    const tiling::Patch<std::uint16_t>& right = features_.images->right;
+    std::uint16_t* out = result_.reasons.row(row - result_.core.row) + (col - result_.core.col);
+    for (int i = 0; i < cols; ++i) {
+        const int x = col + i;
+        const int winner = range_min + winners[i].index;
+        const int counterpart = x - winner;
+        int reasons = low_texture[i] != 0 ? kLowTexture : 0;
+        if (asked.count() > 1 && (winner == asked.min || winner == asked.max)) {
+            reasons |= kRangeEnd;
+        }
+        if (x - asked.max > right_cols - 1 || x - asked.min < 0) {
+            reasons |= kOutside;
+        } else if (right_has_gaps_ && counterpart >= 0 && counterpart < right_cols &&
+                   !is_valid(right.at(row, counterpart))) {
+            reasons |= kNodataRight;
+        }
+        out[i] = static_cast<std::uint16_t>(is_valid(left[i]) ? reasons : kNodataLeft);
     }
-    int reasons = 0;
-    const int counterpart = col - winner;
-    if (col - asked.max > right_cols - 1 || col - asked.min < 0) {
-        reasons |= kOutside;
-    } else if (counterpart >= 0 && counterpart < right_cols &&
-               !is_valid(features_.images->right.at(row, counterpart))) {
-        reasons |= kNodataRight;
-    }
-    if (features_.low_texture.at(row, col) != 0) {
-        reasons |= kLowTexture;
-    }
-    if (asked.count() > 1 && (winner == asked.min || winner == asked.max)) {
-        reasons |= kRangeEnd;
-    }
-    return static_cast<std::uint16_t>(reasons);
 }
 
 void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int col,
@@ -114,12 +104,10 @@ void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int co
     const std::scoped_lock lock(row_locks_[static_cast<std::size_t>(row) % kLocks]);
     std::uint32_t* keys = &target.at(row, last_col - begin);
     for (int j = begin; j < end; ++j, --keys) {
-        const std::uint16_t pixel = candidates.pixel(j);
-        if (pixel != RightCandidates::kNobody) {
-            const auto index = static_cast<std::uint32_t>(j - (part.cols - 1 - pixel));
-            *keys = std::min(*keys, std::uint32_t{candidates.sum(j)} << 16 |
-                                        (asked_first + index));
-        }
+        const std::uint32_t pixel = candidates.pixel(j);
+        const std::uint32_t index = std::uint32_t(j - (part.cols - 1)) + pixel + asked_first;
+        const std::uint32_t key = candidates.sum(j) << 16 | (index & 0xFFFFU);
+        *keys = std::min(*keys, pixel == RightCandidates::kNobody ? kNoKey : key);
     }
 }
 

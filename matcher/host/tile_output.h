@@ -1,6 +1,7 @@
 #pragma once
 
 #include "matcher/host/level_features.h"
+#include "matcher/host/sum_results.h"
 #include "matcher/host/sums.h"
 #include "matcher/host/winner.h"
 #include "matcher/matcher.h"
@@ -13,6 +14,7 @@ namespace hsgm::matcher::host {
 /// Buffers of a worker for `TileOutput`.
 struct OutputWorkspace {
     Buffer<Winner> winners;
+    Buffer<float> results;
     Buffer<std::uint8_t> valid;
     RightCandidates candidates;
 };
@@ -33,15 +35,14 @@ public:
 private:
     void add_part(const BlockSums& sums, int row, int col, int cols,
                   OutputWorkspace& workspace);
-    void add_pixel(const SumsRow& part, int i, const Winner& winner, int range_min, int row,
-                   int col);
-    std::uint16_t reasons_of(int row, int col, int winner) const;
+    void add_reasons(const Winner* winners, int range_min, int row, int col, int cols);
     void merge_right(const SumsRow& part, int range_min, int row, int col,
                      const RightCandidates& candidates);
 
     const LevelFeatures& features_;
     const PairTraits& pair_;
     TileMatch result_;
+    bool right_has_gaps_ = false; ///< pixels without data
     std::vector<std::mutex> row_locks_;
 };
 

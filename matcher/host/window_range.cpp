@@ -138,7 +138,8 @@ tiling::Patch<std::int16_t> winner_medians(const tiling::Patch<std::int16_t>& wi
             medians_of_columns(columns, inner_begin, inner_end, out + (inner_begin - first));
         }
         if (first == 0) {
-            out[0] = median_at(columns, 0, 0, std::min<std::size_t>(1, std::size_t(all.cols) - 1));
+            out[0] =
+                median_at(columns, 0, 0, std::min<std::size_t>(1, std::size_t(all.cols) - 1));
         }
         if (last + 1 == std::size_t(all.cols)) {
             out[last - first] = median_at(columns, last > 0 ? last - 1 : 0, last, last);

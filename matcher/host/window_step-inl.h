@@ -15,7 +15,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace hsgm::matcher::host::HWY_NAMESPACE {
@@ -112,7 +111,8 @@ class MemorySums {
     static constexpr int kN = int(hn::MaxLanes(D()));
 
 public:
-    HWY_INLINE MemorySums(const std::uint8_t* first, bool store, std::uint16_t* sums, int stride)
+    HWY_INLINE MemorySums(const std::uint8_t* first, bool store, std::uint16_t* sums,
+                          int stride)
         : sums_(sums), stride_(stride)
     {
         for (int i = 0; i < stride; i += kN) {
@@ -272,15 +272,20 @@ HWY_INLINE std::uint8_t spread_start(const std::uint8_t* kept, tiling::Disparity
     const int count = fine.count();
     const int first = tiling::floor_div(fine.min, 2);
     const int values = count / 2 + 2;
-    // scratch[j]: the cost of coarse disparity first + j.
-    for (int j = 0; j < values; j += 16) {
-        hn::StoreU(hn::Set(d, unsearched), d, scratch + j);
-    }
+    // scratch[j]: the cost of coarse disparity first + j. Whole vectors, then what they
+    // wrote too much is filled: calls into the C library would take longer.
     const int begin = std::max(first, coarse.min);
     const int end = std::min(first + values, coarse.max + 1);
-    if (begin < end) {
-        std::memcpy(scratch + (begin - first), kept + (begin - coarse.min),
-                    std::size_t(end - begin));
+    const auto fill = hn::Set(d, unsearched);
+    for (int j = 0; j < begin - first && j < values; j += 16) {
+        hn::StoreU(fill, d, scratch + j);
+    }
+    for (int j = 0; j < end - begin; j += 16) {
+        hn::StoreU(hn::LoadU(d, kept + (begin - coarse.min) + j), d,
+                   scratch + (begin - first) + j);
+    }
+    for (int j = std::max(end - first, 0); j < values; j += 16) {
+        hn::StoreU(fill, d, scratch + j);
     }
     std::uint8_t* spread = scratch + stride / 2 + 96;
     for (int j = 0; j < values; j += 16) {
@@ -290,7 +295,9 @@ HWY_INLINE std::uint8_t spread_start(const std::uint8_t* kept, tiling::Disparity
         hn::StoreU(hn::InterleaveUpper(d, even, odd), d, spread + 2 * j + 16);
     }
     spread += fine.min - 2 * first;
-    std::memset(spread + count, 255, std::size_t(stride - count));
+    for (int i = count; i < stride; i += 16) {
+        hn::StoreU(hn::Set(d, std::uint8_t{255}), d, spread + i);
+    }
     auto least = hn::Set(d, std::uint8_t{255});
     for (int i = 0; i < stride; i += 16) {
         const auto v = hn::LoadU(d, spread + i);

@@ -70,7 +70,8 @@ private:
     {
         const D d;
         const auto lane = hn::Iota(d, 0);
-        return hn::Add(hn::Add(lane, lane), hn::Set(d, static_cast<std::uint16_t>(2 * v * kN + odd)));
+        return hn::Add(hn::Add(lane, lane),
+                       hn::Set(d, static_cast<std::uint16_t>(2 * v * kN + odd)));
     }
     template <class M>
     HWY_INLINE V where(M mask, V value) const
@@ -140,14 +141,14 @@ void prior_in_lanes(const SumsRow& row, const Winner* winners, std::uint8_t* pri
     const auto cap = hn::Set(d, std::uint16_t{kPriorCap});
     const int half = row.stride / 2;
     const auto quotient = [&](const std::uint16_t* sums, int least) HWY_ATTR {
-        const auto x = hn::SaturatedSub(hn::LoadU(d, sums),
-                                        hn::Set(d, static_cast<std::uint16_t>(least)));
+        const auto x =
+            hn::SaturatedSub(hn::LoadU(d, sums), hn::Set(d, static_cast<std::uint16_t>(least)));
         if constexpr (kPaths == 5) {
             // floor(x / 5) = x * 52429 >> 18 for every 16-bit x.
             return hn::Min(hn::ShiftRight<2>(hn::MulHigh(x, hn::Set(d, std::uint16_t{52429}))),
                            cap);
         } else {
-            return hn::Min(hn::ShiftRight<kPaths == 4 ? 2 : kPaths == 8 ? 3 : 4>(x), cap);
+            return hn::Min(hn::ShiftRight < kPaths == 4 ? 2 : kPaths == 8 ? 3 : 4 > (x), cap);
         }
     };
     for (int col = 0; col < row.cols; ++col, prior += row.stride) {
@@ -246,7 +247,8 @@ void merge_row(const SumsRow& row, const std::uint8_t* valid, const CandidatePla
             const int odd = (first % 2 != 0 ? 0 : to.plane) + (first + 1) / 2;
             const auto number = static_cast<std::uint16_t>(col);
             merge.plane(row.at(col), 0, number, to.sums + even, to.pixels + even);
-            merge.plane(row.at(col) + row.stride / 2, 1, number, to.sums + odd, to.pixels + odd);
+            merge.plane(row.at(col) + row.stride / 2, 1, number, to.sums + odd,
+                        to.pixels + odd);
         }
     };
     const int half = row.cols / 2;

@@ -2,6 +2,7 @@
 
 #include "io/hillshade.h"
 #include "io/quicklook.h"
+#include "pipeline/stages/pair_stage.h"
 #include "pipeline/stages/tile_stage.h"
 
 #include <fmt/format.h>
@@ -100,7 +101,10 @@ MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
         for (const auto& of : tiles.shards) {
             add_results(planned, layout, of.shard, of.tiles, results);
         }
-        summary = refine_and_write(results, planned.shape, planned.job, planned.geo);
+        const auto images =
+            open_images(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
+        summary =
+            refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
     });
     if (!outputs.hillshade.empty()) {
         book.record("hillshade", whole, [&] { write_hillshade(outputs); });

@@ -92,41 +92,51 @@ void FirstPass::add(std::shared_ptr<const FirstPassPart> part, std::vector<Rect>
     sources_.push_back({std::move(part), std::move(done)});
 }
 
-matcher::RefineInput FirstPass::read(const Rect& core, const matcher::Options& options) const
+matcher::RefineInput FirstPass::read(const matcher::RefineSupport& support) const
 {
-    const Rect grown =
-        intersect(expand(core, matcher::refine_margin_px(options)), rect_of(shape_.left));
-    matcher::RefineInput input{Patch<std::int32_t>(grown), Patch<std::uint8_t>(grown),
-                               Patch<std::uint16_t>(grown, matcher::kFailedTile),
-                               Patch<std::uint32_t>(matcher::keys_of(grown, shape_))};
-    tiling::Image<std::uint32_t> keys;
+    matcher::RefineInput input;
+    input.disparity_q8 = Patch<std::int32_t>(support.first_pass);
+    input.confidence = Patch<std::uint8_t>(support.first_pass);
+    input.reasons = Patch<std::uint16_t>(support.first_pass, matcher::kFailedTile);
+    input.right_keys = Patch<std::uint32_t>(support.right_keys);
     for (const Source& source : sources_) {
-        const FirstPassPart& part = *source.part;
         for (const Rect& done : source.done) {
-            const Rect common = intersect(done, grown);
-            const Rect stored = part.in_band(common);
-            if (!common.empty()) {
-                part.disparity_q8_.read(stored, input.disparity_q8.view_of(common));
-                part.confidence_.read(stored, input.confidence.view_of(common));
-                part.reasons_.read(stored, input.reasons.view_of(common));
-            }
+            read_done(*source.part, intersect(done, support.first_pass), input);
         }
-        const Rect rows{part.band_.row, 0, part.band_.rows, shape_.right.cols};
-        const Rect seen = intersect(input.right_keys.rect, rows);
-        if (!seen.empty()) {
-            keys = read_image(part.right_keys_, part.in_band(seen));
-            for (int row = seen.row; row < seen.row_end(); ++row) {
-                const std::uint32_t* theirs = keys.row(row - seen.row);
-                std::uint32_t* all = &input.right_keys.at(row, seen.col);
-                std::transform(theirs, theirs + seen.cols, all, all,
-                               [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
-            }
-        }
+        merge_keys(*source.part, input.right_keys);
     }
-    auto& stored_keys = input.right_keys.pixels;
-    std::transform(stored_keys.pixels().begin(), stored_keys.pixels().end(), stored_keys.data(),
+    auto& keys = input.right_keys.pixels;
+    std::transform(keys.pixels().begin(), keys.pixels().end(), keys.data(),
                    [](std::uint32_t key) { return ~key; });
     return input;
+}
+
+void FirstPass::read_done(const FirstPassPart& part, const Rect& done,
+                          matcher::RefineInput& input) const
+{
+    if (done.empty()) {
+        return;
+    }
+    const Rect stored = part.in_band(done);
+    part.disparity_q8_.read(stored, input.disparity_q8.view_of(done));
+    part.confidence_.read(stored, input.confidence.view_of(done));
+    part.reasons_.read(stored, input.reasons.view_of(done));
+}
+
+void FirstPass::merge_keys(const FirstPassPart& part, Patch<std::uint32_t>& merged) const
+{
+    const Rect rows{part.band_.row, 0, part.band_.rows, shape_.right.cols};
+    const Rect seen = intersect(merged.rect, rows);
+    if (seen.empty()) {
+        return;
+    }
+    const auto keys = read_image(part.right_keys_, part.in_band(seen));
+    for (int row = seen.row; row < seen.row_end(); ++row) {
+        const std::uint32_t* theirs = keys.row(row - seen.row);
+        std::uint32_t* all = &merged.at(row, seen.col);
+        std::transform(theirs, theirs + seen.cols, all, all,
+                       [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
+    }
 }
 
 std::int64_t FirstPass::disk_bytes(const matcher::PairShape& shape, std::int64_t rows)

@@ -55,9 +55,9 @@ public:
     /// Takes results into view: `part` has those of the pixels in `done`.
     void add(std::shared_ptr<const FirstPassPart> part, std::vector<tiling::Rect> done);
 
-    /// What `refine` needs for `core`. Pixels that nobody has results of carry the reason
-    /// failed_tile.
-    matcher::RefineInput read(const tiling::Rect& core, const matcher::Options& options) const;
+    /// What `refine` needs of the first pass; its images stay empty. Pixels that nobody has
+    /// results of carry the reason failed_tile.
+    matcher::RefineInput read(const matcher::RefineSupport& support) const;
 
     /// Bytes of scratch disk for so many rows of a pair.
     static std::int64_t disk_bytes(const matcher::PairShape& shape, std::int64_t rows);
@@ -67,6 +67,11 @@ private:
         std::shared_ptr<const FirstPassPart> part;
         std::vector<tiling::Rect> done;
     };
+    // Both of pixels that are in the part.
+    void read_done(const FirstPassPart& part, const tiling::Rect& done,
+                   matcher::RefineInput& input) const;
+    void merge_keys(const FirstPassPart& part, tiling::Patch<std::uint32_t>& merged) const;
+
     matcher::PairShape shape_;
     std::vector<Source> sources_;
 };

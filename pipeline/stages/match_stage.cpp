@@ -5,6 +5,7 @@
 #include "io/pending_file.h"
 #include "io/scratch_folder.h"
 #include "pipeline/error.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/run_log.h"
 #include "pipeline/stages/assemble_stage.h"
 #include "pipeline/stages/earlier_run.h"
@@ -20,6 +21,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace hsgm::pipeline {
 
@@ -188,6 +193,7 @@ void Run::do_coarse()
     try {
         (*book)->set_facts(as_facts(fingerprint_));
         prepare_pair(planned_, layout_, *book, manner_.is_durable());
+        give_back_freed_memory();
     } catch (...) {
         // Nothing is worth resuming: what bad input leaves is what was there before it.
         if (!manner_.shard && layout_.shards().empty()) {
@@ -218,6 +224,7 @@ void Run::do_tiles(Shard shard)
                            [&] { judge_earlier_shard(layout_, shard, manner_, fingerprint_); });
     (*book)->set_facts(as_facts(fingerprint_));
     match_tiles(planned_, layout_, shard, manner_, *book, progress_);
+    give_back_freed_memory();
     for (const ledger::TileRow& row : (*book)->tiles(kMatchStage)) {
         result_.tiles_done += row.state == ledger::TileState::done;
         if (row.state == ledger::TileState::failed) {

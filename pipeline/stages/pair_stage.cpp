@@ -81,13 +81,6 @@ bool needs_hmi(const PlannedJob& planned)
     return planned.job.matcher.cost == matcher::Cost::hmi;
 }
 
-std::unique_ptr<PreparedPair> open_images(const PlannedJob& planned, const RunLayout& layout,
-                                          const Facts& facts)
-{
-    return std::make_unique<PreparedPair>(planned.shape, planned.pyramid_levels,
-                                          tones_of(facts), layout.pair());
-}
-
 // Whether the images that an earlier process prepared are all there.
 bool are_there(const PlannedJob& planned, const RunLayout& layout, const OwnedLedger& book)
 {
@@ -109,8 +102,8 @@ void prepare_images(const PlannedJob& planned, const RunLayout& layout, const Ow
     std::error_code none;
     std::filesystem::remove_all(layout.pair(), none);
     std::filesystem::create_directories(layout.pair(), none);
-    io::RasterSource left(planned.job.left);
-    io::RasterSource right(planned.job.right);
+    FileSource left{io::RasterSource(planned.job.left)};
+    FileSource right{io::RasterSource(planned.job.right)};
     PreparedPair images(left, right, planned.pyramid_levels, layout.pair());
     if (durable) {
         images.sync();
@@ -143,6 +136,13 @@ void prepare_pair(const PlannedJob& planned, const RunLayout& layout, const Owne
     if (needs_hmi(planned) && !book.is_done("hmi")) {
         book.record("hmi", whole, [&] { learn_hmi_table(planned, layout, book); });
     }
+}
+
+std::unique_ptr<PreparedPair> open_images(const PlannedJob& planned, const RunLayout& layout,
+                                          const Facts& facts)
+{
+    return std::make_unique<PreparedPair>(planned.shape, planned.pyramid_levels,
+                                          tones_of(facts), layout.pair());
 }
 
 PairBasis open_pair(const PlannedJob& planned, const RunLayout& layout, const Facts& facts)

@@ -21,6 +21,11 @@ struct PairBasis {
 void prepare_pair(const PlannedJob& planned, const RunLayout& layout, const OwnedLedger& book,
                   bool durable);
 
+/// Opens the images that `prepare_pair` left; `facts` are those of its ledger. Throws
+/// StorageError where something is missing.
+std::unique_ptr<PreparedPair> open_images(const PlannedJob& planned, const RunLayout& layout,
+                                          const ledger::Facts& facts);
+
 /// Opens what `prepare_pair` left; `facts` are those of its ledger. Throws StorageError where
 /// something is missing.
 PairBasis open_pair(const PlannedJob& planned, const RunLayout& layout,

@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "pipeline/cpu_worker.h"
 #include "pipeline/error.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/ledger/recorder.h"
 #include "pipeline/run_log.h"
 #include "pipeline/stages/tile_list.h"
@@ -259,6 +260,7 @@ void match_tiles(const PlannedJob& planned, const RunLayout& layout, tiling::Sha
         open_pair(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
     std::shared_ptr<const matcher::CoarseSolution> coarse;
     book.record("coarse", band, [&] { coarse = solve_coarse(pair); });
+    give_back_freed_memory();
     const auto part = parts.own();
     std::function<void()> make_durable;
     if (manner.is_durable()) {

@@ -14,7 +14,11 @@ import subprocess
 import sys
 import tempfile
 
-RAW = ["matcher.left_right_px=off", "matcher.median=1"]
+RAW = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.subpixel=sums",
+       "matcher.min_confidence=0", "matcher.median=off"]
+# Every pixel answers, but the answer is filtered, as that of OpenCV's matcher always is.
+ANSWERED = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.min_confidence=0"]
+CLOSE_UP = ["matcher.cost=pairs_bt", "matcher.p1=20"]
 PATHS = {}
 
 
@@ -130,15 +134,22 @@ def readable(truth, folder):
     return vrt
 
 
-def score_scene(scene, settings, folder, threshold=1):
-    _, place, disparity, truth, options = scene
+def match_scene(scene, settings, folder):
+    _, place, disparity, _, _ = scene
     data = os.path.join(PATHS["data"], place)
-    here = [os.path.join(data, o) if o.endswith(".png") else o for o in options]
     test = os.path.join(folder, "scene.tif")
     images = [f for f in os.listdir(data) if f.startswith(("left", "right."))]
     left, right = (os.path.join(data, next(f for f in sorted(images) if f.startswith(side)))
                    for side in ("left", "right"))
     match(left, right, disparity, settings, test)
+    return test
+
+
+def score_scene(scene, settings, folder, threshold=1):
+    _, place, _, truth, options = scene
+    data = os.path.join(PATHS["data"], place)
+    here = [os.path.join(data, o) if o.endswith(".png") else o for o in options]
+    test = match_scene(scene, settings, folder)
     return score(test, readable(os.path.join(data, truth), folder), "--thresholds", str(threshold), *here)
 
 
@@ -155,13 +166,16 @@ def middlebury(folder):
 
 
 def peers(folder):
-    print("### Every scene, default options\n")
-    header("scene", "threshold", "raw % bad", "checked % bad", "density %", "% bad among valid")
+    print("### Every scene\n")
+    header("scene", "threshold", "raw", "answered", "close-up, answered", "checked", "density %",
+           "% bad among valid")
     for threshold, scenes in ((1, CLASSICS + OTHERS), (3, COARSE)):
         for scene in scenes:
-            raw = score_scene(scene, RAW, folder, threshold)
-            checked = score_scene(scene, [], folder, threshold)
+            raw, answered, close_up, checked = (
+                score_scene(scene, settings, folder, threshold)
+                for settings in (RAW, ANSWERED, ANSWERED + CLOSE_UP, []))
             row(scene[0], f"{threshold} px", f"{bad(raw, threshold):.2f}",
+                f"{bad(answered, threshold):.2f}", f"{bad(close_up, threshold):.2f}",
                 f"{bad(checked, threshold):.2f}", f"{checked['density_percent']:.1f}",
                 f"{bad(checked, threshold, 'bad_answered_percent'):.2f}")
     print()
@@ -198,17 +212,25 @@ def memory(folder):
 TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "memory": memory}
 
 
-def main():
+def add_paths(parser):
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], default=list(TABLES))
     parser.add_argument("--hsgm", default=os.path.join(root, "build", "hsgm"))
     parser.add_argument("--data", default=os.environ.get(
         "HSGM_DATA_DIR", os.path.join(root, "..", "shared", "data")))
+    PATHS.update(root=root, configs=os.path.join(root, "configs"))
+
+
+def use_paths(arguments):
+    PATHS.update(hsgm=arguments.hsgm, data=arguments.data)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], default=list(TABLES))
+    add_paths(parser)
     arguments = parser.parse_args()
-    PATHS.update(hsgm=arguments.hsgm, data=arguments.data,
-                 configs=os.path.join(root, "configs"))
+    use_paths(arguments)
     with tempfile.TemporaryDirectory() as folder:
         for table in arguments.tables:
             TABLES[table](folder)
