@@ -44,6 +44,8 @@ TEST_CASE("each option outside its bounds is named, with its value and what is a
           "halo must be an even number from 0 to the window size, not 66");
     CHECK(refusal([](Options& o) { o.p2 = 4001; }) == "p2 must be 0..4000, not 4001");
     CHECK(refusal([](Options& o) { o.p1 = 200; }) == "p1 must be 0..p2, not 200");
+    CHECK(refusal([](Options& o) { o.p2_half_tone = 0; }) ==
+          "p2_half_tone must be 1..255, not 0");
     CHECK(refusal([](Options& o) { o.left_right_px = -2; }) ==
           "left_right_px must be off or 0..64, not -2");
     CHECK(refusal([](Options& o) { o.median = 4; }) == "median must be 1 (off), 3 or 5, not 4");
@@ -56,6 +58,7 @@ TEST_CASE("each option outside its bounds is named, with its value and what is a
     CHECK(refusal([](Options& o) { o.min_confidence = 256; }) ==
           "min_confidence must be 0..255, not 256");
     CHECK(refusal([](Options& o) { o.fill_px = 0; }) == "fill_px must be 1..256, not 0");
+    CHECK(refusal([](Options& o) { o.smooth = 7; }) == "smooth must be 1 (off), 3 or 5, not 7");
 }
 
 TEST_CASE("the ends of what is allowed are allowed")

@@ -155,3 +155,16 @@ TEST_CASE("the twin trusts a pixel by its neighbours and their margins")
     surface.q8(2, 0) += 385; // no longer wide: 1809, entry 3
     CHECK(confidence_at(surface, none, 0, 0) == 105);
 }
+
+TEST_CASE("the twin's mean is that of one surface, rounded to the nearest")
+{
+    Surface surface;
+    surface.q8 = image_of<std::int32_t>({{-1024, -1020, -767, -768, 5000}});
+    surface.has_value = image_of<std::uint8_t>({{1, 1, 1, 0, 1}});
+    CHECK(mean_of_near(surface, 0, 0, 1) == -1024);
+    CHECK(mean_of_near(surface, 0, 0, 3) == -1022);
+    CHECK(mean_of_near(surface, 0, 0, 5) == -1022); // the third is 257 away
+    CHECK(mean_of_near(surface, 0, 1, 5) == -937);  // -2811 / 3
+    CHECK(mean_of_near(surface, 0, 2, 3) == -893);  // -893.5
+    CHECK(mean_of_near(surface, 0, 4, 5) == 5000);
+}
