@@ -30,7 +30,7 @@ void smooth_row(const std::int32_t* HWY_RESTRICT centre, std::ptrdiff_t stride, 
             for (int col = -radius; col <= radius; ++col) {
                 // Between a hole and a value this is far away, so a hole is never near.
                 const auto off = hn::Sub(hn::LoadU(d, centre + row * stride + i + col), own);
-                const auto near = hn::Le(hn::Abs(off), reach);
+                const auto near = hn::Not(hn::Gt(hn::Abs(off), reach));
                 sum = hn::Add(sum, hn::IfThenElseZero(near, off));
                 count = hn::Sub(count, hn::VecFromMask(d, near));
             }

@@ -52,7 +52,7 @@ TEST_CASE("the twin's path costs enter a window from the coarser level")
     const int a = std::abs(left(0, 16) - left(0, 15));
     const PixelCosts entering = path_costs(
         fine.matching(0, 16), coarse_start(coarse.paths[kRightward](0, 7), kFine, 192, true),
-        24, gradient_penalty(24, 192, a));
+        24, gradient_penalty(24, 192, 5, a));
     CHECK(path(0, 16) == entering);
     CHECK(path(0, 0) == fine.matching(0, 0));
 
@@ -76,8 +76,9 @@ TEST_CASE("the twin's path costs enter a window from the coarser level")
         const Level haloed = solve_level(pair_of(left, right), kFine, false, options, &coarse);
         PixelCosts run = coarse_start(coarse.paths[kRightward](0, 6), kFine, 192, true);
         for (int c = 14; c <= 16; ++c) {
-            run = path_costs(haloed.matching(0, c), run, 24,
-                             gradient_penalty(24, 192, std::abs(left(0, c) - left(0, c - 1))));
+            run =
+                path_costs(haloed.matching(0, c), run, 24,
+                           gradient_penalty(24, 192, 5, std::abs(left(0, c) - left(0, c - 1))));
         }
         CHECK(haloed.paths[kRightward](0, 16) == run);
     }
@@ -85,8 +86,9 @@ TEST_CASE("the twin's path costs enter a window from the coarser level")
     {
         const Level whole = solve_level(pair_of(left, right), kFine, true, options, nullptr);
         CHECK(whole.paths[kRightward](0, 15) == path(0, 15));
-        CHECK(whole.paths[kRightward](0, 16) ==
-              path_costs(fine.matching(0, 16), path(0, 15), 24, gradient_penalty(24, 192, a)));
+        CHECK(whole.paths[kRightward](0, 16) == path_costs(fine.matching(0, 16), path(0, 15),
+                                                           24,
+                                                           gradient_penalty(24, 192, 5, a)));
     }
     SECTION("mode local starts afresh")
     {
