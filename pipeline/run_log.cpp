@@ -129,9 +129,14 @@ LogFile::LogFile(const std::filesystem::path& path) : state_(std::make_unique<St
 
 LogFile::~LogFile()
 {
-    if (state_->sink != nullptr) {
+    if (state_->sink == nullptr) {
+        return;
+    }
+    loggers().files->remove_sink(state_->sink);
+    try {
         state_->sink->flush();
-        loggers().files->remove_sink(state_->sink);
+    } catch (const std::exception& error) {
+        spdlog::warn("the log is not whole: {}", error.what()); // a full disk, say
     }
 }
 

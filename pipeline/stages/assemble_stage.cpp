@@ -103,8 +103,7 @@ MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
         }
         const auto images =
             open_images(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
-        summary =
-            refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
+        summary = refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
     });
     if (!outputs.hillshade.empty()) {
         book.record("hillshade", whole, [&] { write_hillshade(outputs); });

@@ -57,7 +57,7 @@ private:
 /// A place whose run takes its time.
 inline RunPlace slow_place()
 {
-    return RunPlace({300, 400}, 255);
+    return RunPlace({600, 800}, 255);
 }
 
 /// Waits for something, half a minute at most.
