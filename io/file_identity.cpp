@@ -4,8 +4,8 @@
 #include "io/gdal_private.h"
 
 #include <cpl_vsi.h>
+#include <sys/stat.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -15,22 +15,14 @@ namespace hsgm::io {
 
 namespace {
 
-constexpr std::int64_t kEndBytes = 64 << 10;
-constexpr std::int64_t kPieceBytes = 4 << 10;
-constexpr std::int64_t kPieces = 64;
+constexpr std::size_t kPieceBytes = 1 << 20;
 
 struct CloseFile {
     void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 using File = std::unique_ptr<VSILFILE, CloseFile>;
 
-std::int64_t length_of(VSILFILE* file)
-{
-    VSIFSeekL(file, 0, SEEK_END);
-    return static_cast<std::int64_t>(VSIFTellL(file));
-}
-
-// FNV-1a, byte by byte: a few hundred KiB at most.
+// FNV-1a (Fowler, Noll, Vo), byte by byte: such files are small beside images.
 void add(std::span<const unsigned char> bytes, std::uint64_t& sum)
 {
     for (const unsigned char byte : bytes) {
@@ -56,25 +48,40 @@ std::string identity_of_file(const std::string& path)
     if (file == nullptr) {
         throw InputError("Cannot read " + path + "; " + errors.quote() + ".");
     }
-    const std::int64_t length = length_of(file.get());
     std::uint64_t sum = 0xCBF29CE484222325ULL;
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(kEndBytes));
-    const auto add_piece = [&](std::int64_t offset, std::int64_t wanted) {
-        const auto size =
-            static_cast<std::size_t>(std::clamp<std::int64_t>(length - offset, 0, wanted));
-        VSIFSeekL(file.get(), static_cast<vsi_l_offset>(offset), SEEK_SET);
-        if (VSIFReadL(bytes.data(), 1, size, file.get()) != size) {
-            throw InputError("Cannot read " + path + " at byte " + std::to_string(offset) +
-                             "; " + errors.quote() + ".");
+    std::uint64_t length = 0;
+    std::vector<unsigned char> bytes(kPieceBytes);
+    while (true) {
+        const std::size_t count = VSIFReadL(bytes.data(), 1, bytes.size(), file.get());
+        add(std::span(bytes).first(count), sum);
+        length += count;
+        if (count < bytes.size()) {
+            break;
         }
-        add(std::span(bytes).first(size), sum);
-    };
-    add_piece(0, kEndBytes);
-    for (std::int64_t i = 1; i <= kPieces && length > 2 * kEndBytes; ++i) {
-        add_piece(length / (kPieces + 1) * i, kPieceBytes);
     }
-    add_piece(std::max<std::int64_t>(length - kEndBytes, 0), kEndBytes);
+    if (VSIFEofL(file.get()) == 0 || errors.failed()) {
+        throw InputError("Cannot read " + path + " at byte " + std::to_string(length) + "; " +
+                         errors.quote() + ".");
+    }
     return std::to_string(length) + " bytes, checksum " + hex(sum);
+}
+
+std::string stamp_of_files(std::span<const std::string> paths)
+{
+    std::string stamp;
+    for (const std::string& path : paths) {
+        struct stat seen = {};
+        if (::stat(path.c_str(), &seen) != 0) {
+            return "";
+        }
+        for (const std::int64_t number :
+             {std::int64_t(seen.st_size), std::int64_t(seen.st_dev), std::int64_t(seen.st_ino),
+              std::int64_t(seen.st_mtim.tv_sec), std::int64_t(seen.st_mtim.tv_nsec),
+              std::int64_t(seen.st_ctim.tv_sec), std::int64_t(seen.st_ctim.tv_nsec)}) {
+            stamp += std::to_string(number) + ' ';
+        }
+    }
+    return stamp;
 }
 
 } // namespace hsgm::io

@@ -1,6 +1,7 @@
 #include "pipeline/stages/earlier_run.h"
 
 #include "io/error.h"
+#include "pipeline/stages/fingerprint_stage.h"
 #include "pipeline/stages/tile_stage.h"
 
 #include <fmt/format.h>
@@ -49,15 +50,21 @@ std::string assembled_of(std::size_t tiles_failed, int tiles_done)
     return fmt::format("{} done, {} failed", tiles_done, tiles_failed);
 }
 
-void require_same(const RunLayout& layout, const Facts& facts, const Facts& now)
+void refuse_differences(const RunLayout& layout, const std::vector<std::string>& found)
 {
-    const Facts before = fingerprint_in(facts);
-    const auto found = ledger::differences(before, now);
-    if (!before.empty() && !found.empty()) {
+    if (!found.empty()) {
         throw io::ConfigError(fmt::format(
             "The run in {} cannot be resumed, because what defines its result has changed: {}; "
             "undo that, or begin anew with --restart",
             layout.root.string(), fmt::join(found, "; ")));
+    }
+}
+
+void require_same(const RunLayout& layout, const Facts& facts, const Facts& now)
+{
+    const Facts before = fingerprint_in(facts);
+    if (!before.empty()) {
+        refuse_differences(layout, ledger::differences(before, now));
     }
 }
 
@@ -158,6 +165,12 @@ void judge_earlier_run(const RunLayout& layout, const RunManner& manner,
     if (manner.resume && !manner.shard && done > 0) {
         spdlog::info("resuming: {} tiles are done", done);
     }
+}
+
+void judge_earlier_pixels(const RunLayout& layout, const PlannedJob& planned)
+{
+    refuse_differences(layout,
+                       changed_pixels(planned, contents_of(layout.coarse_ledger()).facts));
 }
 
 void discard(const RunLayout& layout)

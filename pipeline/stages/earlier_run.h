@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/stages/owned_ledger.h"
+#include "pipeline/stages/plan_stage.h"
 #include "pipeline/stages/run_layout.h"
 #include "pipeline/stages/run_manner.h"
 
@@ -22,6 +23,10 @@ bool is_assembled(const OwnedLedger& book, std::size_t tiles_failed, int tiles_d
 /// StorageError where a process is at work on what would go.
 void judge_earlier_run(const RunLayout& layout, const RunManner& manner,
                        const ledger::Facts& fingerprint);
+
+/// Throws ConfigError where the images that an earlier attempt has prepared have other pixels
+/// than those of today, with the difference. Reads them whole where their files were touched.
+void judge_earlier_pixels(const RunLayout& layout, const PlannedJob& planned);
 
 /// Removes everything that a run keeps beside its outputs, as far as that can be done.
 void discard(const RunLayout& layout);

@@ -3,43 +3,21 @@
 #include "io/file_identity.h"
 #include "io/raster_source.h"
 #include "pipeline/ledger/checksum.h"
+#include "pipeline/stages/pixel_checksum.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <tbb/parallel_invoke.h>
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace hsgm::pipeline {
 
 namespace {
 
-constexpr int kWindowsAcross = 8;
-constexpr int kWindowSide = 32;
-
-// Pixels as the matcher will see them: nodata is NaN, whatever number it is stored as.
-std::string sample(io::RasterSource& source)
-{
-    const tiling::Size size = source.size();
-    const tiling::Size window{std::min(size.rows, kWindowSide),
-                              std::min(size.cols, kWindowSide)};
-    ledger::Checksum sum;
-    tiling::Image<double> pixels(window);
-    const auto place = [](int i, int room) {
-        return static_cast<int>(std::int64_t{room} * i / (kWindowsAcross - 1));
-    };
-    for (int i = 0; i < kWindowsAcross * kWindowsAcross; ++i) {
-        source.read({place(i / kWindowsAcross, size.rows - window.rows),
-                     place(i % kWindowsAcross, size.cols - window.cols), window.rows,
-                     window.cols},
-                    pixels.view());
-        std::replace_if(
-            pixels.data(), pixels.data() + window.area(),
-            [](double v) { return std::isnan(v); },
-            -1e300); // NaN has many bit patterns
-        sum.add_values(pixels.pixels());
-    }
-    return sum.hex();
-}
+constexpr const char* kLeftPixels = "pair.left_pixels";
+constexpr const char* kRightPixels = "pair.right_pixels";
+constexpr const char* kStamp = "pair.stamp";
 
 std::string text_of(const io::GeoReference& geo)
 {
@@ -57,7 +35,6 @@ void describe(const std::string& name, const io::ImageSpec& spec, ledger::Facts&
     facts[name + " size"] = fmt::format("{} x {} px", source.size().cols, source.size().rows);
     facts[name + " type"] = io::name_of(source.pixel_type());
     facts[name + " georeference"] = text_of(source.geo_reference());
-    facts[name + " pixels"] = "checksum " + sample(source);
 }
 
 bool defines_the_result(const io::ConfigValue& value)
@@ -87,6 +64,50 @@ ledger::Facts fingerprint(const PlannedJob& planned, const ledger::Facts& settin
     describe("left image", planned.job.left, facts);
     describe("right image", planned.job.right, facts);
     return facts;
+}
+
+std::string stamp_of(const PlannedJob& planned)
+{
+    std::vector<std::string> files = io::RasterSource(planned.job.left).files();
+    for (std::string& file : io::RasterSource(planned.job.right).files()) {
+        files.push_back(std::move(file));
+    }
+    return io::stamp_of_files(files);
+}
+
+ledger::Facts pixel_facts(const PairChecksums& checksums, const std::string& stamp)
+{
+    return {{kLeftPixels, checksums.left}, {kRightPixels, checksums.right}, {kStamp, stamp}};
+}
+
+ledger::Facts pixels_in(const ledger::Facts& facts)
+{
+    ledger::Facts found;
+    for (const auto& [fact, name] : {std::pair(kLeftPixels, "left image pixels"),
+                                     std::pair(kRightPixels, "right image pixels")}) {
+        const auto known = facts.find(fact);
+        if (known != facts.end()) {
+            found[name] = "checksum " + known->second;
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> changed_pixels(const PlannedJob& planned, const ledger::Facts& facts)
+{
+    const ledger::Facts before = pixels_in(facts);
+    const auto stamp = facts.find(kStamp);
+    const std::string now = stamp_of(planned);
+    if (before.empty() || (stamp != facts.end() && !now.empty() && stamp->second == now)) {
+        return {};
+    }
+    spdlog::info("the images have been touched since; comparing all of their pixels");
+    FileSource left{io::RasterSource(planned.job.left)};
+    FileSource right{io::RasterSource(planned.job.right)};
+    PairChecksums checksums;
+    tbb::parallel_invoke([&] { checksums.left = checksum_of(left); },
+                         [&] { checksums.right = checksum_of(right); });
+    return ledger::differences(before, pixels_in(pixel_facts(checksums, now)));
 }
 
 } // namespace hsgm::pipeline

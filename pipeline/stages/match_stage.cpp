@@ -185,6 +185,7 @@ void Run::do_coarse()
     const auto book =
         take(layout_.coarse_ledger(), manner_.shard ? WhenHeld::wait : WhenHeld::refuse, [&] {
             judge_earlier_run(layout_, manner_, fingerprint_);
+            judge_earlier_pixels(layout_, planned_);
             already_finished_ = is_finished(layout_) && outputs_are_there();
         });
     if (already_finished_) {
@@ -284,8 +285,9 @@ void Run::finish(const OwnedLedger& book, const TilesOfRun& tiles)
     if (!manner_.is_durable()) {
         return;
     }
-    const auto record =
-        run_record(planned_, layout_, result_.summary.value(), fingerprint_, book);
+    ledger::Facts defines = fingerprint_;
+    defines.merge(pixels_in(ledger::read_ledger(layout_.coarse_ledger()).facts));
+    const auto record = run_record(planned_, layout_, result_.summary.value(), defines, book);
     if (!manner_.used_yaml.empty()) {
         io::write_text_file((layout_.root / "config.used.yaml").string(), manner_.used_yaml);
     }

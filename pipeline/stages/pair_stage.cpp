@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "io/raster_source.h"
 #include "pipeline/cancellable.h"
+#include "pipeline/stages/fingerprint_stage.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -104,11 +105,14 @@ void prepare_images(const PlannedJob& planned, const RunLayout& layout, const Ow
     std::filesystem::create_directories(layout.pair(), none);
     FileSource left{io::RasterSource(planned.job.left)};
     FileSource right{io::RasterSource(planned.job.right)};
-    PreparedPair images(left, right, planned.pyramid_levels, layout.pair());
+    const std::string stamp = stamp_of(planned); // whoever touches them from now on is noticed
+    PairChecksums checksums;
+    PreparedPair images(left, right, planned.pyramid_levels, layout.pair(), checksums);
     if (durable) {
         images.sync();
     }
     book->set_facts({{kTones, text_of(images.tones())}});
+    book->set_facts(pixel_facts(checksums, stamp));
 }
 
 void learn_hmi_table(const PlannedJob& planned, const RunLayout& layout,

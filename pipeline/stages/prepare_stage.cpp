@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "matcher/reduce.h"
 #include "pipeline/error.h"
+#include "pipeline/stages/pixel_checksum.h"
 #include "pipeline/stages/pixel_mapping.h"
 #include "tiling/pyramid.h"
 
@@ -35,8 +36,9 @@ std::vector<Raster> open_levels(const std::filesystem::path& folder, const std::
 }
 
 // Copies a source into level 0 and returns the counts of its valid pixels.
-std::unique_ptr<PixelHistogram>
-copy_full_resolution(PixelSource& source, const PixelMapping& mapping, Raster& level0)
+std::unique_ptr<PixelHistogram> copy_full_resolution(PixelSource& source,
+                                                     const PixelMapping& mapping,
+                                                     Raster& level0, PixelChecksum& checksum)
 {
     auto histogram = std::make_unique<PixelHistogram>();
     tiling::Image<double> values;
@@ -48,6 +50,7 @@ copy_full_resolution(PixelSource& source, const PixelMapping& mapping, Raster& l
             pixels = tiling::Image<std::uint16_t>(window.size());
         }
         source.read(window, values);
+        checksum.add(values.view());
         std::transform(values.pixels().begin(), values.pixels().end(), pixels.data(), mapping);
         for (const std::uint16_t pixel : pixels.pixels()) {
             ++(*histogram)[pixel];
@@ -79,9 +82,11 @@ void reduce_level(const Raster& fine, Raster& coarse)
 }
 
 matcher::Tone fill(PixelSource& source, const PixelMapping& mapping,
-                   std::vector<Raster>& levels)
+                   std::vector<Raster>& levels, std::string& checksum)
 {
-    const auto histogram = copy_full_resolution(source, mapping, levels.front());
+    PixelChecksum sum;
+    const auto histogram = copy_full_resolution(source, mapping, levels.front(), sum);
+    checksum = sum.hex();
     if (std::all_of(histogram->begin(), histogram->end(), [](auto n) { return n == 0; })) {
         throw io::InputError(source.description() +
                              " has no valid pixel: everything is nodata or masked; check the "
@@ -103,7 +108,8 @@ Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
 } // namespace
 
 PreparedPair::PreparedPair(PixelSource& left, PixelSource& right, int levels,
-                           const std::filesystem::path& scratch_folder)
+                           const std::filesystem::path& scratch_folder,
+                           PairChecksums& checksums)
 {
     const auto life = io::ScratchLife::kept;
     left_.levels =
@@ -111,8 +117,9 @@ PreparedPair::PreparedPair(PixelSource& left, PixelSource& right, int levels,
     right_.levels =
         open_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels), life);
     const PixelMapping mapping = find_mapping(left, right);
-    tbb::parallel_invoke([&] { left_.tone = fill(left, mapping, left_.levels); },
-                         [&] { right_.tone = fill(right, mapping, right_.levels); });
+    tbb::parallel_invoke(
+        [&] { left_.tone = fill(left, mapping, left_.levels, checksums.left); },
+        [&] { right_.tone = fill(right, mapping, right_.levels, checksums.right); });
 }
 
 PreparedPair::PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,

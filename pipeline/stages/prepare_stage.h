@@ -8,6 +8,7 @@
 #include "pipeline/stages/pixel_source.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace hsgm::pipeline {
@@ -18,15 +19,21 @@ struct PairTones {
     matcher::Tone right;
 };
 
+/// Checksums of all pixels of a pair's sources, as read.
+struct PairChecksums {
+    std::string left;
+    std::string right;
+};
+
 /// Both images of a pair as the matcher wants them, every pyramid level, on scratch disk, where
 /// they stay. Reads are thread-safe.
 class PreparedPair {
 public:
-    /// Streams both sources through once (twice for float sources) and reduces them level by
-    /// level; memory does not grow with the images. Throws InputError for an image without a
-    /// single valid pixel.
+    /// Streams both sources through once (twice for float sources), tells their checksums on
+    /// the way and reduces them level by level; memory does not grow with the images. Throws
+    /// InputError for an image without a single valid pixel.
     PreparedPair(PixelSource& left, PixelSource& right, int levels,
-                 const std::filesystem::path& scratch_folder);
+                 const std::filesystem::path& scratch_folder, PairChecksums& checksums);
     /// Opens what another process has prepared. Throws StorageError where it is not whole.
     PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,
                  const std::filesystem::path& scratch_folder);

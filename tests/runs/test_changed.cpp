@@ -56,15 +56,28 @@ TEST_CASE("a run whose configuration has changed is not resumed, and says what d
 TEST_CASE("a run whose images have changed is not resumed, and says which")
 {
     const Unfinished run;
+    const tiling::Size size = run.place.planned().shape.right;
     const std::string right = io::samples::bytes_of_file(run.place / "right.tif");
-    make_raster(run.place / "right.tif", GDT_Byte, {300, 400}, {noise({300, 400}, 77)});
+    Pixels pixels = shifted(noise(size), size, 5);
+    pixels[pixels.size() / 2] += pixels[pixels.size() / 2] > 0 ? -1 : 1;
+    make_raster(run.place / "right.tif", GDT_Byte, size, {pixels});
     run.refused({"--resume"}, {"right image pixels: checksum ", " before, checksum "});
-    make_raster(run.place / "right.tif", GDT_Byte, {300, 401}, {noise({300, 401}, 77)});
-    run.refused({"--resume"}, {"right image size: 400 x 300 px before, 401 x 300 px now"});
+    make_raster(run.place / "right.tif", GDT_Byte, {size.rows, size.cols + 1},
+                {noise({size.rows, size.cols + 1}, 77)});
+    run.refused({"--resume"}, {"right image size: 800 x 600 px before, 801 x 600 px now"});
     put_bytes(run.place / "right.tif", right);
     put_bytes(run.place / "elsewhere.tif", right);
-    run.place.run_to(0, {"--resume", "--set", "pair.right=elsewhere.tif"});
+    const Outcome resumed =
+        run.place.run_to(0, {"--resume", "--set", "pair.right=elsewhere.tif"});
+    CHECK_THAT(resumed.err, Contains("the images have been touched since"));
     CHECK((run.place.rasters() == run.place.undisturbed()));
+}
+
+TEST_CASE("images that nobody touched are not read again to resume")
+{
+    const Unfinished run;
+    const Outcome resumed = run.place.run_to(0, {"--resume"});
+    CHECK_THAT(resumed.err, !Contains("the images have been touched since"));
 }
 
 TEST_CASE("a finished run may be replaced by another")
