@@ -18,7 +18,7 @@ constexpr int kSupportWeight = 200;
 /// (docs/algorithm.md, section 6, step 7; docs/benchmarks.md says what it was measured on).
 /// Rises strictly, so that the score can be told from the confidence.
 constexpr std::array<std::uint8_t, 25> kConfidenceOfScore{
-    54,  72,  86,  105, 124, 141, 159, 176, 190, 202, 213, 223, 231,
-    237, 241, 244, 247, 248, 249, 250, 251, 252, 253, 254, 255};
+    60,  71,  85,  102, 121, 140, 157, 174, 187, 199, 211, 222, 230,
+    236, 241, 244, 247, 248, 249, 250, 251, 252, 253, 254, 255};
 
 } // namespace hsgm::matcher

@@ -59,7 +59,7 @@ struct Options {
     int speckle_px = 25;      ///< segments of fewer pixels lose their values, 2..500; 0 = off
     int speckle_range_px = 1; ///< neighbours of one segment differ by this at most, 1..64
     Subpixel subpixel = Subpixel::census;
-    int min_confidence = 128; ///< values trusted less are taken away, 0..255
+    int min_confidence = 150; ///< values trusted less are taken away, 0..255
     int median = 3;           ///< side of the median filter: 3 or 5; 1 = off
     int smooth = 5;           ///< side of the mean over one surface: 3 or 5; 1 = off
     Fill fill = Fill::none;

@@ -29,6 +29,7 @@ Options options_of(Profile profile)
     case Profile::close:
         o.cost = Cost::pairs_bt;
         o.p1 = 20;
+        o.paths = 4;
         break;
     }
     return o;

@@ -5,11 +5,14 @@
 #include "tiling/pyramid.h"
 #include "tiling/tile_plan.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 
 namespace hsgm::bench {
 
@@ -129,18 +132,24 @@ matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<Level
     const tiling::TilePlan plan(shape.left, tile_size_px);
     const auto read =
         std::span(images).first(static_cast<std::size_t>(matcher.plan().windowed_levels()));
-    matcher::RefineInput first;
-    if (plan.count() > 1) {
-        first = empty_first_pass(shape);
-    }
-    for (int i = 0; i < plan.count(); ++i) {
-        matcher::TileMatch tile = matcher.match_tile(plan.core(i), read, coarse);
+    if (plan.count() == 1) {
+        matcher::TileMatch tile = matcher.match_tile(plan.core(0), read, coarse);
         work += tile.work;
-        if (plan.count() == 1) {
-            return taken(std::move(tile));
-        }
-        store(tile, first);
+        return taken(std::move(tile));
     }
+    matcher::RefineInput first = empty_first_pass(shape);
+    std::mutex storing;
+    // As many tiles at once as there are threads, as in a run. Least keys do not ask for order.
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, plan.count()),
+        [&](const tbb::blocked_range<int>& one) {
+            const matcher::TileMatch tile =
+                matcher.match_tile(plan.core(one.begin()), read, coarse);
+            const std::lock_guard lock(storing);
+            work += tile.work;
+            store(tile, first);
+        },
+        tbb::simple_partitioner());
     return first;
 }
 

@@ -189,9 +189,9 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     Options& o = c.options;
     o.mode = random.one_of(
         {Mode::hsgm, Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local});
-    o.cost = random.one_of({Cost::census5x5, Cost::census7x7, Cost::census7x7, Cost::census9x7,
-                            Cost::pairs5x5, Cost::ternary5x5, Cost::census_ad, Cost::pairs_bt,
-                            Cost::birchfield_tomasi, Cost::hmi});
+    const auto costs = matcher::all_costs();
+    o.cost =
+        costs[static_cast<std::size_t>(random.between(0, static_cast<int>(costs.size()) - 1))];
     o.paths = random.one_of({4, 5, 8, 8, 16});
     o.levels = random.chance(80) ? random.between(1, 4) : 0;
     o.window_px = random.one_of({16, 16, 32, 64});

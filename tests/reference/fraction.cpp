@@ -62,8 +62,8 @@ std::int32_t census_fraction(const Image<std::uint16_t>& left,
 std::uint8_t confidence_at(const Surface& surface, const Image<std::uint8_t>& margins, int row,
                            int x)
 {
-    constexpr std::array<int, 25> kTable{54,  72,  86,  105, 124, 141, 159, 176, 190,
-                                         202, 213, 223, 231, 237, 241, 244, 247, 248,
+    constexpr std::array<int, 25> kTable{60,  71,  85,  102, 121, 140, 157, 174, 187,
+                                         199, 211, 222, 230, 236, 241, 244, 247, 248,
                                          249, 250, 251, 252, 253, 254, 255};
     int score = 0;
     for (const int distance : {2, 5}) {

@@ -137,6 +137,12 @@ TEST_CASE("other costs, paths, windows and penalties keep the bits as well")
     options.halo_px = 30;
     options.left_right_px = -1;
     check_tilings(small_city(), options, {{90, TileOrder::shuffled}});
+    for (const Cost cost : matcher::all_costs()) {
+        if (cost != Cost::hmi) { // above, with its table
+            check_tilings(small_city(), of(Mode::hsgm, cost, 8, 3),
+                          {{70, TileOrder::shuffled}});
+        }
+    }
 }
 
 TEST_CASE("checks, filters and made-up values keep the bits, however far they look")

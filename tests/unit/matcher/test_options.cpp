@@ -100,7 +100,7 @@ TEST_CASE("modes and costs are found by their names")
     for (const Mode mode : {Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local}) {
         CHECK(mode_from_name(name(mode)) == mode);
     }
-    CHECK(all_costs().size() >= 4);
+    CHECK(all_costs().size() >= 9);
     for (const Cost cost : all_costs()) {
         CHECK(cost_from_name(name(cost)) == cost);
     }

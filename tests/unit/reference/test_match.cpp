@@ -71,6 +71,7 @@ struct Line {
         options.median = 1;
         options.speckle_px = 0;
         options.min_confidence = 0;
+        options.smooth = 1;
         options.subpixel = Subpixel::sums;
     }
     MatchResult solve() const { return match(left, right, asked, {}, {}, options, &table); }
