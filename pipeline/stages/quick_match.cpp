@@ -90,7 +90,7 @@ Patch<std::uint32_t> keys(const Patch<std::uint32_t>& made, const tiling::Rect& 
 } // namespace
 
 Image<float> quick_match(const Image<double>& left, const Image<double>& right,
-                         tiling::DisparityRange disparity)
+                         tiling::DisparityRange disparity, int least_confidence)
 {
     matcher::Options options;
     matcher::PairTraits traits;
@@ -113,10 +113,13 @@ Image<float> quick_match(const Image<double>& left, const Image<double>& right,
         patch_of(all, std::move(match.disparity_q8)),
         patch_of(all, std::move(match.confidence)), patch_of(all, std::move(match.reasons)),
         keys(match.right_keys, matcher::keys_of(all, traits.shape))};
-    Image<float> result = matcher::refine(all, input, traits.shape, options).disparity_px;
-    std::replace(result.data(), result.data() + result.size().area(), matcher::kNodataDisparity,
-                 std::numeric_limits<float>::quiet_NaN());
-    return result;
+    matcher::Refined refined = matcher::refine(all, input, traits.shape, options);
+    for (std::int64_t i = 0; i < left.size().area(); ++i) {
+        if (refined.confidence.data()[i] < least_confidence) { // 0 where there is no value
+            refined.disparity_px.data()[i] = std::numeric_limits<float>::quiet_NaN();
+        }
+    }
+    return std::move(refined.disparity_px);
 }
 
 } // namespace hsgm::pipeline

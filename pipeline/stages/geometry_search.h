@@ -1,17 +1,14 @@
 #pragma once
 
 #include "io/image_spec.h"
-#include "pipeline/geometry/epipolar_frame.h"
-#include "pipeline/geometry/ground_lattice.h"
+#include "pipeline/geometry/footprint.h"
 #include "pipeline/geometry/overlap.h"
+#include "pipeline/geometry/pair_geometry.h"
 #include "pipeline/geometry/pointing.h"
-#include "pipeline/geometry/reference_surface.h"
 #include "pipeline/geometry/rpc_camera.h"
-#include "tiling/disparity_range.h"
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace hsgm::pipeline {
 
@@ -36,22 +33,6 @@ struct PairGeometryOptions {
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid
 };
 
-/// All that is known of a pair before it is matched. Made once, stored, and then only read:
-/// whoever has it agrees with all others to the last bit.
-struct PairGeometry {
-    geometry::RpcCamera left;
-    geometry::RpcCamera right; ///< with the correction that was found
-    std::string frame_map;     ///< the map grid of the frame
-    std::string output_map;    ///< and that of ground points
-    geometry::ReferenceSurface surface;
-    geometry::EpipolarFrame frame;
-    geometry::GroundLattice ground;
-    tiling::DisparityRange disparity;
-    geometry::HeightSpan heights; ///< that the disparities stand for, above the ellipsoid
-    std::optional<geometry::Pointing> pointing;
-    std::vector<std::string> warnings;
-};
-
 /// Finds a pair's geometry from its images:
 ///
 ///     models, overlap -> reduced images, coarse frame -> features -> rough pointing, heights
@@ -61,7 +42,7 @@ struct PairGeometry {
 /// Reads each image through once and patches of it again; memory does not grow with them.
 /// Throws InputError in a sentence that names the images where they make no pair, and
 /// ConfigError for a map that cannot be used.
-PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
-                                const PairGeometryOptions& options);
+geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
+                                          const PairGeometryOptions& options);
 
 } // namespace hsgm::pipeline

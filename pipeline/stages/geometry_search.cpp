@@ -1,14 +1,12 @@
-#include "pipeline/stages/pair_geometry.h"
+#include "pipeline/stages/geometry_search.h"
 
 #include "io/error.h"
 #include "pipeline/geometry/disparity_bounds.h"
 #include "pipeline/geometry/error.h"
-#include "pipeline/geometry/resampler.h"
 #include "pipeline/geometry/tie_points.h"
-#include "pipeline/stages/camera_stage.h"
 #include "pipeline/stages/quick_match.h"
-#include "pipeline/stages/reduced_image.h"
 #include "pipeline/stages/resampled_source.h"
+#include "pipeline/stages/sensor_view.h"
 
 #include <fmt/format.h>
 
@@ -26,6 +24,7 @@ using geometry::FrameOptions;
 using geometry::FramePatch;
 using geometry::HeightSpan;
 using geometry::MapProjection;
+using geometry::PairGeometry;
 using geometry::Pointing;
 using geometry::PointingModel;
 using geometry::ReferenceSurface;
@@ -37,9 +36,8 @@ using tiling::Image;
 using tiling::Rect;
 using tiling::Size;
 
-/// Reduced images have at most this many pixels a side, and are at least halved beyond that.
-constexpr int kReducedPx = 2048;
-constexpr int kSmallPx = 640;
+/// Features are sought in images of at most about that size.
+constexpr int kFeaturePx = 1024;
 constexpr int kCoarseFeatures = 4000;
 /// Patches at full resolution from which the pointing is found.
 constexpr int kPatchPx = 512;
@@ -49,69 +47,8 @@ constexpr int kPatchFeatures = 2000;
 constexpr double kSearchDownM = 50;
 constexpr double kSearchUpM = 100;
 constexpr int kSearches = 4;
-
-int reduction_of(Size size)
-{
-    const int side = std::max(size.rows, size.cols);
-    return std::max(tiling::ceil_div(side, kReducedPx), side > kSmallPx ? 2 : 1);
-}
-
-/// One of the images, with all that the search needs of it.
-struct View {
-    const SensorImage& sensor;
-    Size size;
-    RpcCamera camera;
-    Image<double> reduced;
-
-    explicit View(const SensorImage& given) : View(given, io::RasterSource(given.image)) {}
-    View(const SensorImage& given, const io::RasterSource& source)
-        : sensor(given), size(source.size()), camera(with_correction(source, given))
-    {
-    }
-
-    static RpcCamera with_correction(const io::RasterSource& source, const SensorImage& given)
-    {
-        const RpcCamera camera = open_camera(source, given.rpc_file);
-        return RpcCamera(camera.model(), given.correction);
-    }
-    void reduce(int factor)
-    {
-        FileSource source{io::RasterSource(sensor.image)};
-        reduced = reduced_image(source, factor);
-        if (std::all_of(reduced.pixels().begin(), reduced.pixels().end(),
-                        [](double value) { return std::isnan(value); })) {
-            throw io::InputError(source.description() +
-                                 " has no valid pixel: everything is nodata or masked; check "
-                                 "the nodata value and the mask");
-        }
-    }
-    RpcCamera reduced_camera(int factor) const
-    {
-        geometry::ImageCorrection correction = camera.correction();
-        // An affine function of the coarse point that does what the full one does.
-        const double middle = (factor - 1) / 2.0;
-        correction.x_px =
-            (correction.x_px + (correction.x_by_x + correction.x_by_y) * middle) / factor;
-        correction.y_px =
-            (correction.y_px + (correction.y_by_x + correction.y_by_y) * middle) / factor;
-        return RpcCamera(geometry::reduced(camera.model(), factor), correction);
-    }
-};
-
-Image<double> drawn(const Image<double>& image, const geometry::Lattice& lattice, Size frame)
-{
-    const geometry::Resampler resampler(lattice, image.size(), geometry::Kernel::lanczos);
-    Image<double> result(frame);
-    resampler.resample(
-        rect_of(frame),
-        [&image](const Rect& window, tiling::ImageView<double> pixels) {
-            for (int r = 0; r < window.rows; ++r) {
-                std::copy_n(image.row(window.row + r) + window.col, window.cols, pixels.row(r));
-            }
-        },
-        result);
-    return result;
-}
+/// Wrong matches that pass the left-right check rarely have more; right ones mostly do.
+constexpr int kLeastConfidence = 160;
 
 /// A frame with both images drawn into it.
 struct DrawnPair {
@@ -136,38 +73,41 @@ private:
     geometry::Polygon region() const;
     FrameOptions frame_options(double level_m, HeightSpan heights, double gsd_m) const;
     EpipolarFrame frame_at(double level_m, HeightSpan heights) const;
-    DrawnPair draw_reduced(double level_m, HeightSpan heights) const;
+    DrawnPair draw_reduced(double level_m, HeightSpan heights, int coarser = 1) const;
     void find_rough_pointing();
     void find_heights();
     HeightSpan widened(HeightSpan heights) const;
+    int feature_reduction() const;
     void find_pointing();
     std::vector<TiePoint> patch_points(const EpipolarFrame& frame) const;
-    void correct_right(const geometry::ImageCorrection& correction);
     PairGeometry finish();
 
-    View left_;
-    View right_;
+    SensorView left_;
+    SensorView right_;
     const PairGeometryOptions& options_;
     MapProjection map_;
     int reduction_ = 1;
     double level_m_ = 0;
     HeightSpan heights_;     // as far as they are known
     HeightSpan tie_heights_; // of the bulk of the rough tie points
+    Pointing rough_;
     std::optional<Pointing> pointing_;
     std::vector<std::string> warnings_;
 };
 
 HeightSpan Search::possible_heights() const
 {
-    return options_.heights ? *options_.heights
-                            : geometry::heights_of(left_.camera.model(), right_.camera.model());
+    return options_.heights
+               ? *options_.heights
+               : geometry::heights_of(left_.camera().model(), right_.camera().model());
 }
 
 MapProjection Search::find_map() const
 {
     const HeightSpan heights = possible_heights();
-    const auto middle = left_.camera.locate({left_.size.cols / 2.0, left_.size.rows / 2.0},
-                                            (heights.low_m + heights.high_m) / 2);
+    const auto middle =
+        left_.camera().locate({left_.size().cols / 2.0, left_.size().rows / 2.0},
+                              (heights.low_m + heights.high_m) / 2);
     if (!middle) {
         throw geometry::GeometryError(
             "the middle of the left image meets no ground: the RPC is that of another image");
@@ -196,43 +136,54 @@ FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gs
 
 EpipolarFrame Search::frame_at(double level_m, HeightSpan heights) const
 {
-    return geometry::make_epipolar_frame(RpcGroundCamera(left_.camera, map_), left_.size,
-                                         RpcGroundCamera(right_.camera, map_), right_.size,
+    return geometry::make_epipolar_frame(RpcGroundCamera(left_.camera(), map_), left_.size(),
+                                         RpcGroundCamera(right_.camera(), map_), right_.size(),
                                          ReferenceSurface(level_m),
                                          frame_options(level_m, heights, options_.gsd_m));
 }
 
-DrawnPair Search::draw_reduced(double level_m, HeightSpan heights) const
+/// The reduced images in a frame of their own, or one with pixels `coarser` times as wide.
+DrawnPair Search::draw_reduced(double level_m, HeightSpan heights, int coarser) const
 {
+    const RpcGroundCamera left(left_.reduced_camera(), map_);
+    const RpcGroundCamera right(right_.reduced_camera(), map_);
+    const auto frame = [&](double gsd_m) {
+        return geometry::make_epipolar_frame(left, left_.reduced().size(), right,
+                                             right_.reduced().size(), ReferenceSurface(level_m),
+                                             frame_options(level_m, heights, gsd_m));
+    };
     DrawnPair pair;
-    const RpcGroundCamera left(left_.reduced_camera(reduction_), map_);
-    const RpcGroundCamera right(right_.reduced_camera(reduction_), map_);
-    pair.frame = geometry::make_epipolar_frame(
-        left, left_.reduced.size(), right, right_.reduced.size(), ReferenceSurface(level_m),
-        frame_options(level_m, heights, options_.gsd_m * reduction_));
-    pair.left = drawn(left_.reduced, pair.frame.left, pair.frame.size);
-    pair.right = drawn(right_.reduced, pair.frame.right, pair.frame.size);
+    pair.frame = frame(options_.gsd_m * reduction_);
+    if (coarser > 1) {
+        pair.frame = frame(pair.frame.gsd_m * coarser);
+    }
+    pair.left = draw(left_.reduced(), pair.frame.left, pair.frame.size);
+    pair.right = draw(right_.reduced(), pair.frame.right, pair.frame.size);
     return pair;
 }
 
-void Search::correct_right(const geometry::ImageCorrection& correction)
+/// Pixels of the images to one of those in which rough tie points are sought.
+int Search::feature_reduction() const
 {
-    right_.camera = RpcCamera(right_.camera.model(),
-                              geometry::joined(right_.camera.correction(), correction));
+    const Size left = left_.reduced().size();
+    const Size right = right_.reduced().size();
+    const int side = std::max({left.rows, left.cols, right.rows, right.cols});
+    return reduction_ * tiling::ceil_div(side, kFeaturePx);
 }
 
 /// Features of the reduced images, over all heights at which they overlap.
 void Search::find_rough_pointing()
 {
-    const DrawnPair pair = draw_reduced(level_m_, heights_);
+    const int coarser = feature_reduction() / reduction_;
+    const DrawnPair pair = draw_reduced(level_m_, heights_, coarser);
     const TieGate gate{(heights_.low_m - level_m_) * pair.frame.px_per_m - 2,
                        (heights_.high_m - level_m_) * pair.frame.px_per_m + 2, 0,
-                       options_.largest_pointing_px / reduction_ + 1};
+                       options_.largest_pointing_px / feature_reduction() + 1};
     const auto points =
         geometry::match_features({0, 0, pair.left}, {0, 0, pair.right}, gate, kCoarseFeatures);
     std::vector<bool> agrees;
     const Pointing rough = geometry::estimate_pointing(
-        pair.frame, points, right_.reduced.size(), PointingModel::shift, &agrees);
+        pair.frame, points, right_.reduced().size(), PointingModel::shift, &agrees);
     std::vector<TiePoint> agreeing;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (agrees[i]) {
@@ -243,7 +194,10 @@ void Search::find_rough_pointing()
         geometry::ImageCorrection correction = rough.correction;
         correction.x_px *= reduction_;
         correction.y_px *= reduction_;
-        correct_right(correction);
+        right_.correct(correction);
+        rough_ = rough;
+        rough_.shift_px *= reduction_;
+        rough_.correction = correction;
     }
     const auto bounds = geometry::bounds_of(agreeing);
     tie_heights_ = {level_m_ + bounds->min_px / pair.frame.px_per_m,
@@ -267,8 +221,9 @@ void Search::find_heights()
         const DrawnPair pair = draw_reduced(level_m, search);
         const auto reach = static_cast<int>(
             std::ceil((search.high_m - search.low_m) / 2 * pair.frame.px_per_m));
-        const auto found =
-            geometry::bounds_of(quick_match(pair.left, pair.right, {-reach, reach}).view());
+        const Image<float> map =
+            quick_match(pair.left, pair.right, {-reach, reach}, kLeastConfidence);
+        const auto found = geometry::bounds_of(map.view());
         if (!found) {
             warnings_.emplace_back("the reduced images could not be matched; the range of "
                                    "heights comes from tie points alone");
@@ -296,12 +251,12 @@ void Search::find_heights()
 /// Features of patches at full resolution, evenly spread over the frame.
 std::vector<TiePoint> Search::patch_points(const EpipolarFrame& frame) const
 {
-    ResampledSource left(io::RasterSource(left_.sensor.image), frame.left, frame.size);
-    ResampledSource right(io::RasterSource(right_.sensor.image), frame.right, frame.size);
+    ResampledSource left(io::RasterSource(left_.sensor().image), frame.left, frame.size);
+    ResampledSource right(io::RasterSource(right_.sensor().image), frame.right, frame.size);
     const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
-                       1.5 * reduction_ + 1};
+                       1.5 * feature_reduction() + 1};
     const auto patches_of = [](int extent) {
-        return std::clamp(extent / kPatchPx, 1, kPatchesAcross);
+        return std::clamp((extent + kPatchPx / 2) / kPatchPx, 1, kPatchesAcross);
     };
     const int down = patches_of(frame.size.rows);
     const int across = patches_of(frame.size.cols);
@@ -332,8 +287,9 @@ void Search::find_pointing()
     const EpipolarFrame frame = frame_at(level_m_, heights_);
     const auto points = patch_points(frame);
     pointing_ =
-        geometry::estimate_pointing(frame, points, right_.size, *options_.pointing, nullptr);
-    correct_right(pointing_->correction);
+        geometry::estimate_pointing(frame, points, right_.size(), *options_.pointing, nullptr);
+    right_.correct(pointing_->correction);
+    *pointing_ = geometry::joined(rough_, *pointing_);
     for (const std::string& warning : pointing_->warnings) {
         warnings_.push_back("pointing: " + warning);
     }
@@ -341,8 +297,8 @@ void Search::find_pointing()
 
 PairGeometry Search::finish()
 {
-    const RpcGroundCamera left(left_.camera, map_);
-    const RpcGroundCamera right(right_.camera, map_);
+    const RpcGroundCamera left(left_.camera(), map_);
+    const RpcGroundCamera right(right_.camera(), map_);
     EpipolarFrame frame = frame_at(level_m_, heights_);
     const tiling::DisparityRange disparity{
         static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
@@ -353,8 +309,8 @@ PairGeometry Search::finish()
     geometry::GroundLattice ground(
         frame, left, right, disparity.min, disparity.max,
         [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); });
-    return {left_.camera,
-            right_.camera,
+    return {left_.camera(),
+            right_.camera(),
             map_.text(),
             output.text(),
             ReferenceSurface(level_m_),
@@ -369,12 +325,12 @@ PairGeometry Search::finish()
 PairGeometry Search::run()
 {
     const geometry::Overlap overlap = geometry::find_overlap(
-        RpcGroundCamera(left_.camera, map_), left_.size, RpcGroundCamera(right_.camera, map_),
-        right_.size, possible_heights());
+        RpcGroundCamera(left_.camera(), map_), left_.size(),
+        RpcGroundCamera(right_.camera(), map_), right_.size(), possible_heights());
     level_m_ = overlap.level_m;
     heights_ = options_.heights ? *options_.heights : overlap.shared;
     if (!options_.heights || options_.pointing) {
-        reduction_ = std::max(reduction_of(left_.size), reduction_of(right_.size));
+        reduction_ = std::max(reduction_of(left_.size()), reduction_of(right_.size()));
         left_.reduce(reduction_);
         right_.reduce(reduction_);
         find_rough_pointing();
@@ -391,8 +347,8 @@ PairGeometry Search::run()
 
 } // namespace
 
-PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
-                                const PairGeometryOptions& options)
+geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
+                                          const PairGeometryOptions& options)
 {
     try {
         return Search(left, right, options).run();
