@@ -1,10 +1,14 @@
 #pragma once
 
+#include "matcher/host/feature_planes.h"
 #include "matcher/matcher.h"
 
 #include <cstdint>
 
 namespace hsgm::matcher::host {
+
+/// Bytes a pixel that a matching cost reads of either image, validity not counted.
+int feature_bytes(Cost cost);
 
 /// What matching reads of one level's images, computed once for all windows of a tile.
 struct LevelFeatures {
@@ -12,10 +16,10 @@ struct LevelFeatures {
     tiling::Size right_size;
     const LevelImages* images = nullptr;
     tiling::Patch<std::uint8_t> left_tone;
-    tiling::Patch<std::uint8_t> right_tone; ///< cost `hmi` only
     tiling::Patch<std::uint8_t> low_texture;
-    tiling::Patch<std::uint64_t> left_census; ///< census costs only
-    tiling::Patch<std::uint64_t> right_census;
+    FeaturePlanes left;       ///< what the matching cost reads
+    FeaturePlanes right;      ///< the same, mirrored
+    std::uint64_t number = 0; ///< another one for every call of level_features
 };
 
 /// The features of level `level` for matching the pixels of `aggregation`.

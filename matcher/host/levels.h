@@ -17,6 +17,8 @@ public:
     virtual ~CoarseSolution() = default;
     /// Bytes it keeps.
     virtual std::int64_t bytes() const = 0;
+
+    MatchStatistics work; ///< that solving it took
 };
 
 } // namespace hsgm::matcher
@@ -60,11 +62,13 @@ private:
                                  Workspaces<L>& workspaces) const;
     TileMatch solve_windows_to_tile(const LevelJob<L>& job, const tiling::Rect& windows,
                                     const tiling::Rect& core, Workspaces<L>& workspaces) const;
+    void add_medians(LevelResult<L>& level) const;
     tiling::DisparityRange range_of(const LevelJob<L>& job, const tiling::Rect& window) const;
 
     const PairTraits& pair_;
     const Options& options_;
     const LevelPlan& plan_;
+    mutable WorkCounter work_;
 };
 
 } // namespace hsgm::matcher::host

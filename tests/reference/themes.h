@@ -20,6 +20,8 @@ Theme wide_ranges();
 Theme dear();
 /// Several windows of one mode.
 Theme of_mode(Mode mode);
+/// One cost and number of paths, whose path costs take eight bits or (`wide`) sixteen.
+Theme of_cost(Cost cost, int paths, bool wide);
 /// The default options on images of a few windows.
 Theme defaults();
 
