@@ -4,6 +4,7 @@
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/stages/refine_stage.h"
+#include "pipeline/stages/satellite_stage.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>
@@ -86,8 +87,9 @@ std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_give
 
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
-    const int floats = 1 + !job.outputs.height.empty() + !job.outputs.depth.empty();
-    return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty());
+    const int floats = 1 + job.geometry.height_per_px_m.has_value() + !job.outputs.depth.empty();
+    return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty()) +
+           (job.satellite ? satellite_output_bytes(job) : 0);
 }
 
 } // namespace
@@ -121,6 +123,10 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
     budget.refine_bytes = kBaseBytes + refine_bytes(shape, job.matcher, budget.threads);
+    if (job.satellite) {
+        budget.refine_bytes = std::max(budget.refine_bytes,
+                                       kBaseBytes + satellite_bytes(job, budget.threads));
+    }
     budget.scratch_disk_bytes =
         PreparedPair::disk_bytes(shape, pyramid_levels) + FirstPass::disk_bytes(shape);
     budget.output_disk_bytes = output_bytes(job, shape);

@@ -14,8 +14,7 @@ namespace hsgm::pipeline {
 
 /// A raw image with its model.
 struct SensorImage {
-    io::ImageSpec image;
-    std::string rpc_file; ///< empty: what the image carries
+    io::ImageSpec image; ///< with the model's file, where it is not the image's own
     /// What is known to be added to the model's image points, from an earlier run.
     geometry::ImageCorrection correction;
 };

@@ -7,7 +7,9 @@
 #include "io/scratch_folder.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/output_check.h"
+#include "pipeline/stages/pair_sources.h"
 #include "pipeline/stages/prepare_stage.h"
+#include "pipeline/stages/satellite_stage.h"
 #include "pipeline/tile_graph.h"
 
 #include <fmt/format.h>
@@ -139,14 +141,18 @@ void run_first_pass(const PlannedJob& planned, const PreparedPair& prepared,
 MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
 {
     const Job& job = planned.job;
-    FileSource left{io::RasterSource(job.left)};
-    FileSource right{io::RasterSource(job.right)};
+    const PairSources sources = open_pair(job);
     const io::ScratchFolder scratch(folder_of(job.outputs.disparity));
     FirstPass first_pass(planned.shape, scratch.path());
-    const PreparedPair prepared(left, right, planned.pyramid_levels, scratch.path());
+    const PreparedPair prepared(*sources.left, *sources.right, planned.pyramid_levels, scratch.path());
     give_back_freed_memory();
     run_first_pass(planned, prepared, first_pass, progress);
-    return refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
+    MatchSummary summary =
+        refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
+    if (job.satellite) {
+        summary.dsm = write_satellite_heights(job);
+    }
+    return summary;
 }
 
 // Pictures for people, made from the finished rasters.
@@ -170,17 +176,23 @@ PlannedJob plan_job(const Job& job)
 {
     const io::RasterSource left(job.left);
     const io::RasterSource right(job.right);
-    check_sizes(left, right);
     check_outputs(job);
     PlannedJob planned;
     planned.job = job;
-    planned.shape = {left.size(), right.size(), job.disparity};
-    planned.geo = left.geo_reference();
+    if (job.satellite) {
+        plan_satellite(planned.job);
+        const tiling::Size frame = planned.job.satellite->pair->frame.size;
+        planned.shape = {frame, frame, planned.job.disparity};
+    } else {
+        check_sizes(left, right);
+        planned.shape = {left.size(), right.size(), job.disparity};
+        planned.geo = left.geo_reference();
+    }
     try {
         const Matcher matcher(planning_traits(planned.shape), job.matcher);
         planned.levels = matcher.plan();
         planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
-        planned.budget = make_budget(matcher, job, planned.pyramid_levels);
+        planned.budget = make_budget(matcher, planned.job, planned.pyramid_levels);
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }
@@ -196,8 +208,9 @@ MatchSummary run_job(const PlannedJob& planned, const Progress& progress)
     if (!planned.job.outputs.hillshade.empty()) {
         io::HillshadeOptions options;
         options.creation_options = planned.job.outputs.creation_options;
-        io::write_hillshade(planned.job.outputs.height.string(),
-                            planned.job.outputs.hillshade.string(), options);
+        const auto& heights =
+            planned.job.satellite ? planned.job.outputs.dsm : planned.job.outputs.height;
+        io::write_hillshade(heights.string(), planned.job.outputs.hillshade.string(), options);
     }
     write_pictures(planned.job.outputs);
     return summary;

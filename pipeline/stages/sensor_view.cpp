@@ -17,7 +17,7 @@ constexpr int kSmallPx = 640;
 
 geometry::RpcCamera corrected_camera(const io::RasterSource& source, const SensorImage& sensor)
 {
-    const geometry::RpcCamera camera = open_camera(source, sensor.rpc_file);
+    const geometry::RpcCamera camera = open_camera(source, sensor.image.rpc);
     return geometry::RpcCamera(camera.model(), sensor.correction);
 }
 

@@ -25,7 +25,10 @@ namespace {
 SensorImage sensor(const std::string& image, const std::string& rpc = "")
 {
     const std::string folder = samples::data_folder() + "/";
-    return {{folder + image}, rpc.empty() ? "" : folder + rpc, {}};
+    SensorImage sensor;
+    sensor.image.path = folder + image;
+    sensor.image.rpc = rpc.empty() ? "" : folder + rpc;
+    return sensor;
 }
 
 Image<double> drawn(const SensorImage& image, const Lattice& lattice, tiling::Size frame)
