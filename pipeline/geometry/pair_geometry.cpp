@@ -131,6 +131,7 @@ ReferenceSurface surface(const json& j)
 json written(const EpipolarFrame& f)
 {
     return {{"rows", f.size.rows},      {"cols", f.size.cols},
+            {"images_gsd_m", f.images_gsd_m},
             {"gsd_m", f.gsd_m},         {"px_per_m", f.px_per_m},
             {"angle_rad", f.angle_rad}, {"below_m", f.below_m},
             {"above_m", f.above_m},     {"lattice_error_px", f.lattice_error_px},
@@ -142,6 +143,7 @@ EpipolarFrame frame(const json& j)
 {
     EpipolarFrame f;
     f.size = {j.at("rows"), j.at("cols")};
+    j.at("images_gsd_m").get_to(f.images_gsd_m);
     j.at("gsd_m").get_to(f.gsd_m);
     j.at("px_per_m").get_to(f.px_per_m);
     j.at("angle_rad").get_to(f.angle_rad);

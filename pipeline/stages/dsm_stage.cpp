@@ -165,7 +165,7 @@ dsm::CellOptions cell_options(double gsd_m, double cell_m, double units_per_m)
     return options;
 }
 
-DsmSummary write_cells(const MatchedPair& pair, const DsmOptions& options, double cell_m,
+DsmSummary write_cells(const MatchedPair& pair, const DsmOptions& options,
                        const DsmPaths& paths, Readers& readers,
                        const std::vector<Rect>& pieces, const std::vector<dsm::Bounds>& bounds,
                        const dsm::DsmGrid& grid)
@@ -184,7 +184,7 @@ DsmSummary write_cells(const MatchedPair& pair, const DsmOptions& options, doubl
     rasters.add(paths.spread, io::PixelType::float32,
                 with_place(float_options(options, "spread of a cell's points", "metre")));
     const auto blocks = pieces_of(grid.size, kGroundPiece);
-    const dsm::CellOptions how = cell_options(pair.gsd_m, cell_m, options.map_units_per_m);
+    const dsm::CellOptions how = cell_options(pair.gsd_m, options.cell_m, options.map_units_per_m);
     DsmSummary summary{grid, 0};
     in_order(
         blocks.size(),
@@ -227,10 +227,9 @@ DsmSummary write_dsm(const MatchedPair& pair, const DsmOptions& options, const D
                                          "show nothing alike within the range of heights",
                                          pair.disparity.string()));
     }
-    const double cell_m = options.cell_m > 0 ? options.cell_m : dsm::cell_for(pair.gsd_m);
-    const dsm::DsmGrid grid = dsm::make_grid(all, cell_m * options.map_units_per_m);
-    const DsmSummary summary =
-        write_cells(pair, options, cell_m, paths, readers, pieces, bounds, grid);
+    const dsm::DsmGrid grid =
+        dsm::make_grid(all, options.cell_m * options.map_units_per_m);
+    const DsmSummary summary = write_cells(pair, options, paths, readers, pieces, bounds, grid);
     readers.clear();
     io::make_cloud_optimized(paths.dsm.string(), options.creation_options);
     return summary;

@@ -21,9 +21,9 @@ struct MatchedPair {
 
 /// What the rasters of heights are made of and say of themselves.
 struct DsmOptions {
-    double cell_m = 0;              ///< 0: a round number near the ground sampling distance
-    std::string map_wkt;            ///< of the ground points, with its vertical datum if any
-    double map_units_per_m = 1;     ///< 1 in metric maps
+    double cell_m = 1;          ///< side of a cell of the DSM
+    std::string map_wkt;        ///< of the ground points, with its vertical datum if any
+    double map_units_per_m = 1; ///< 1 in metric maps
     std::map<std::string, std::string> metadata;
     std::vector<std::string> creation_options;
 };

@@ -26,7 +26,7 @@ struct PairGeometryOptions {
     /// How the right image's pointing is mended; absent: it is taken as it is.
     std::optional<geometry::PointingModel> pointing = geometry::PointingModel::automatic;
     double largest_pointing_px = 50; ///< how far off it may be
-    double gsd_m = 0;                ///< of the frame; 0: that of the images
+    double gsd_m = 0;                ///< of the frame; 0: three quarters of the images'
     geometry::Polygon region_deg;    ///< convex: x longitude, y latitude; empty: everything
     std::string crs;                 ///< of the ground points; empty: the UTM zone
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid

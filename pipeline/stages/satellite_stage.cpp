@@ -23,7 +23,7 @@ constexpr double kMetresPerDegree = 111319.49;
 double cell_m(const Job& job)
 {
     const double asked = job.satellite->dsm_gsd_m;
-    return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.gsd_m);
+    return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.images_gsd_m);
 }
 
 DsmOptions dsm_options(const Job& job, const MapProjection& map)
