@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace hsgm::pipeline {
@@ -59,9 +59,10 @@ void check_map(ConfigSection& section, const PairGeometryOptions& search)
     }
 }
 
-void refuse_for_others(ConfigSection& section, const std::vector<std::string>& keys,
-                       const SatelliteOptions& given, const SatelliteOptions& defaults)
+// The first of the section's keys that says something else than its default; empty: none does.
+std::string first_given(const std::vector<std::string>& keys, const SatelliteOptions& given)
 {
+    const SatelliteOptions defaults;
     const auto& a = given.search;
     const auto& b = defaults.search;
     const std::map<std::string, bool> differs{
@@ -69,13 +70,19 @@ void refuse_for_others(ConfigSection& section, const std::vector<std::string>& k
         {"pointing", a.pointing != b.pointing},
         {"largest_pointing_px", a.largest_pointing_px != b.largest_pointing_px},
         {"epipolar_gsd_m", a.gsd_m != b.gsd_m},
+        {"stored", !given.stored.empty()},
         {"gsd_m", given.dsm_gsd_m != defaults.dsm_gsd_m},
         {"crs", a.crs != b.crs},
         {"vertical", a.vertical != b.vertical}};
-    for (const std::string& key : keys) {
-        if (differs.at(key)) {
-            section.fail(key, "is for geometry kind rpc only: leave it out");
-        }
+    const auto found = std::find_if(keys.begin(), keys.end(),
+                                    [&](const std::string& key) { return differs.at(key); });
+    return found == keys.end() ? "" : *found;
+}
+
+void refuse(const ConfigSection& section, const std::string& key, const char* why)
+{
+    if (!key.empty()) {
+        section.fail(key, why);
     }
 }
 
@@ -96,18 +103,31 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
         geometry.number_or("epipolar_gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
     options.dsm_gsd_m =
         dsm.number_or("gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
+    options.stored = geometry.optional_path("stored").value_or("");
     const std::string crs = dsm.text("crs", "auto");
     options.search.crs = crs == "auto" ? "" : crs;
     const std::string vertical = dsm.text("vertical", "ellipsoid");
     options.search.vertical = vertical == "ellipsoid" ? "" : vertical;
-    if (kind == "rpc") {
-        check_map(dsm, options.search);
-        return options;
+    if (kind != "rpc") {
+        constexpr const char* kWhy = "is for geometry kind rpc only: leave it out";
+        refuse(geometry, first_given({"heights_m", "pointing", "largest_pointing_px",
+                                      "epipolar_gsd_m", "stored"},
+                                     options),
+               kWhy);
+        refuse(dsm, first_given({"gsd_m", "crs", "vertical"}, options), kWhy);
+        return std::nullopt;
     }
-    refuse_for_others(geometry, {"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m"},
-                      options, defaults);
-    refuse_for_others(dsm, {"gsd_m", "crs", "vertical"}, options, defaults);
-    return std::nullopt;
+    if (!options.stored.empty()) {
+        constexpr const char* kWhy = "is what geometry.stored says already: leave one of the "
+                                     "two out";
+        refuse(geometry,
+               first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m"},
+                           options),
+               kWhy);
+        refuse(dsm, first_given({"crs", "vertical"}, options), kWhy);
+    }
+    check_map(dsm, options.search);
+    return options;
 }
 
 } // namespace hsgm::pipeline

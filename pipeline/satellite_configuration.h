@@ -8,7 +8,7 @@
 namespace hsgm::pipeline {
 
 /// Reads the keys of `geometry` and `dsm` that raw pairs have. Nothing where `kind` is another
-/// one; then a key that says something else than its default throws ConfigError.
+/// one: then a key that says something else than its default throws ConfigError.
 std::optional<SatelliteOptions> read_satellite(io::ConfigSection geometry,
                                                io::ConfigSection dsm, const std::string& kind);
 

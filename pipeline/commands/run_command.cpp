@@ -28,6 +28,10 @@ The least configuration of a rectified pair:
   geometry: {kind: rectified}
   matcher: {disparity: [0, 63]}
   output: {folder: result}
+and of a raw satellite pair with RPCs:
+  pair: {left: left.tif, right: right.tif}
+  geometry: {kind: rpc}
+  output: {folder: result}
 Paths are relative to the configuration file. docs/configuration.md explains every key.)";
 
 constexpr const char* kPlanHelp = R"(Examples:
@@ -76,6 +80,10 @@ void run(const Arguments& arguments)
     }
     log_plan(planned);
     make_folder(configuration.folder);
+    if (planned.job.satellite) {
+        io::write_text_file((configuration.folder / "geometry.json").string(),
+                            to_json(*planned.job.satellite->pair));
+    }
     ProgressLog progress;
     const MatchSummary summary = run_job(planned, std::ref(progress));
     // Last, because until then the folder may hold the results of an earlier run.

@@ -1,14 +1,17 @@
 #include "pipeline/stages/satellite_stage.h"
 
+#include "io/error.h"
 #include "pipeline/dsm/dsm_grid.h"
+#include "pipeline/geometry/error.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/geometry/pair_geometry.h"
+#include "pipeline/stages/camera_stage.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <fstream>
+#include <sstream>
 
 namespace hsgm::pipeline {
 
@@ -39,14 +42,44 @@ DsmOptions dsm_options(const Job& job, const MapProjection& map)
     return options;
 }
 
+void check_model(const io::ImageSpec& image, const geometry::RpcCamera& stored,
+                 const std::string& path)
+{
+    const io::RasterSource source(image);
+    if (!(open_camera(source, image.rpc).model() == stored.model())) {
+        throw io::InputError(fmt::format("{} is the geometry of other images: the RPC of {} is "
+                                         "not the one that it was found with",
+                                         path, source.description()));
+    }
+}
+
+PairGeometry stored_geometry(const std::string& path, const Job& job)
+{
+    std::ifstream file(path);
+    std::stringstream text;
+    text << file.rdbuf();
+    if (!file) {
+        throw io::InputError(fmt::format("cannot read the stored geometry {}", path));
+    }
+    try {
+        PairGeometry pair = geometry::pair_geometry_from_json(text.str());
+        check_model(job.left, pair.left, path);
+        check_model(job.right, pair.right, path);
+        return pair;
+    } catch (const geometry::GeometryError& error) {
+        throw io::InputError(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
 } // namespace
 
 void plan_satellite(Job& job)
 {
-    const SensorImage left{job.left, {}};
-    const SensorImage right{job.right, {}};
+    const std::string& stored = job.satellite->stored;
     job.satellite->pair = std::make_shared<PairGeometry>(
-        find_pair_geometry(left, right, job.satellite->search));
+        stored.empty() ? find_pair_geometry({job.left, {}}, {job.right, {}},
+                                            job.satellite->search)
+                       : stored_geometry(stored, job));
     job.disparity = job.satellite->pair->disparity;
 }
 

@@ -5,8 +5,9 @@
 
 namespace hsgm::pipeline {
 
-/// Finds the geometry of a job's raw pair and keeps it in the job, with the range of
-/// disparities. Throws what `find_pair_geometry` throws.
+/// Finds the geometry of a job's raw pair, or reads the stored one, and keeps it in the job
+/// with the range of disparities. Throws what `find_pair_geometry` throws, and InputError for a
+/// stored geometry that cannot be read or is of other images.
 void plan_satellite(Job& job);
 
 /// Heights and DSM of a raw pair from its finished disparities and confidences.
