@@ -127,8 +127,9 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
         budget.refine_bytes = std::max(budget.refine_bytes,
                                        kBaseBytes + satellite_bytes(job, budget.threads));
     }
+    budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
-        PreparedPair::disk_bytes(shape, pyramid_levels) + FirstPass::disk_bytes(shape);
+        budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);
     budget.output_disk_bytes = output_bytes(job, shape);
     if (job.run.tile_size_px) {
         set_tiles(budget, matcher, *job.run.tile_size_px);

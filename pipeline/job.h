@@ -21,6 +21,10 @@ struct RunOptions {
     tiling::TileOrder order = tiling::TileOrder::rows;
     int threads = 0;                           ///< 0: one for each processor
     std::optional<std::uint64_t> memory_bytes; ///< absent: 80 % of what the machine offers
+    /// A tile that takes longer counts as failed; 0: no limit.
+    double tile_limit_s = 0;
+    /// So long after that a worker that does not come back is left behind.
+    double tile_grace_s = 10;
 };
 
 /// How a disparity of a rectified pair becomes a height or a depth; all absent: it does not.
@@ -49,6 +53,9 @@ struct OutputPaths {
     std::filesystem::path disparity_picture; ///< PNG, as is hillshade_picture
     std::filesystem::path hillshade_picture;
     std::vector<std::string> creation_options; ///< GDAL's KEY=VALUE, for every raster
+
+    /// All files that are asked for.
+    std::vector<std::filesystem::path> files() const;
 };
 
 /// One pair to be matched: all that is known before a pixel is read.

@@ -4,7 +4,7 @@
 
 namespace hsgm::pipeline {
 
-PairSources open_pair(const Job& job)
+PairSources open_sources(const Job& job)
 {
     if (!job.satellite) {
         return {std::make_unique<FileSource>(io::RasterSource(job.left)),

@@ -15,6 +15,6 @@ struct PairSources {
 };
 
 /// Opens them. `job` must outlive the result; of raw pairs it holds the geometry found.
-PairSources open_pair(const Job& job);
+PairSources open_sources(const Job& job);
 
 } // namespace hsgm::pipeline

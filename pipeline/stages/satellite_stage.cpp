@@ -1,17 +1,13 @@
 #include "pipeline/stages/satellite_stage.h"
 
-#include "io/error.h"
 #include "pipeline/dsm/dsm_grid.h"
-#include "pipeline/geometry/error.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/geometry/pair_geometry.h"
-#include "pipeline/stages/camera_stage.h"
+#include "pipeline/stages/stored_geometry.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace hsgm::pipeline {
 
@@ -42,35 +38,6 @@ DsmOptions dsm_options(const Job& job, const MapProjection& map)
     return options;
 }
 
-void check_model(const io::ImageSpec& image, const geometry::RpcCamera& stored,
-                 const std::string& path)
-{
-    const io::RasterSource source(image);
-    if (!(open_camera(source, image.rpc).model() == stored.model())) {
-        throw io::InputError(fmt::format("{} is the geometry of other images: the RPC of {} is "
-                                         "not the one that it was found with",
-                                         path, source.description()));
-    }
-}
-
-PairGeometry stored_geometry(const std::string& path, const Job& job)
-{
-    std::ifstream file(path);
-    std::stringstream text;
-    text << file.rdbuf();
-    if (!file) {
-        throw io::InputError(fmt::format("cannot read the stored geometry {}", path));
-    }
-    try {
-        PairGeometry pair = geometry::pair_geometry_from_json(text.str());
-        check_model(job.left, pair.left, path);
-        check_model(job.right, pair.right, path);
-        return pair;
-    } catch (const geometry::GeometryError& error) {
-        throw io::InputError(fmt::format("{}: {}", path, error.what()));
-    }
-}
-
 } // namespace
 
 void plan_satellite(Job& job)
@@ -79,7 +46,7 @@ void plan_satellite(Job& job)
     job.satellite->pair = std::make_shared<PairGeometry>(
         stored.empty() ? find_pair_geometry({job.left, {}}, {job.right, {}},
                                             job.satellite->search)
-                       : stored_geometry(stored, job));
+                       : read_geometry(stored, job));
     job.disparity = job.satellite->pair->disparity;
 }
 
@@ -107,22 +74,6 @@ std::int64_t satellite_output_bytes(const Job& job)
     const double cells = static_cast<double>(frame.size.area()) * 2 *
                          std::pow(frame.gsd_m / cell_m(job), 2);
     return frame.size.area() * 8 + static_cast<std::int64_t>(cells * (kCellBytes + 4 * 4.0 / 3));
-}
-
-std::string describe_geometry(const PairGeometry& pair)
-{
-    std::string pointing = "pointing as given";
-    if (pair.pointing) {
-        const geometry::Pointing& p = *pair.pointing;
-        pointing = fmt::format("pointing mended by {:.2f} px{} from {} of {} tie points ({:.2f} "
-                               "-> {:.2f} px rms)",
-                               p.shift_px, p.affine ? " and a slope" : "", p.inliers, p.points,
-                               p.rms_before_px, p.rms_after_px);
-    }
-    return fmt::format("{}; heights {:.0f} to {:.0f} m above the ellipsoid; frame of {} x {} px "
-                       "of {:.3f} m, {:.2f} px per metre of height",
-                       pointing, pair.heights.low_m, pair.heights.high_m, pair.frame.size.cols,
-                       pair.frame.size.rows, pair.frame.gsd_m, pair.frame.px_per_m);
 }
 
 } // namespace hsgm::pipeline

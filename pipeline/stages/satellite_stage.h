@@ -19,7 +19,4 @@ std::int64_t satellite_bytes(const Job& job, int threads);
 /// What the DSM and its sidecars take at most on the disk, uncompressed.
 std::int64_t satellite_output_bytes(const Job& job);
 
-/// What was found of a raw pair, in one line for people.
-std::string describe_geometry(const geometry::PairGeometry& pair);
-
 } // namespace hsgm::pipeline

@@ -24,7 +24,9 @@ cameras:
   left: {toward_east: 0.14, toward_north: 0.06, turn_deg: 3}
   right: {toward_east: -0.17, toward_north: -0.03, turn_deg: TURN, written_col_px: 1.1, written_row_px: -1.7}
 terrain:
-  waves: [{amplitude_px: 6, wavelength_px: 500, direction_deg: 35}]
+  waves: # two ways, or co-registration has nothing to hold on to
+    - {amplitude_px: 6, wavelength_px: 400, direction_deg: 35}
+    - {amplitude_px: 4, wavelength_px: 300, direction_deg: 120}
   texture: {mean: 0.4, contrast: 0.06, finest_px: 2.5, octaves: 4}
 city:
   cell_px: 96
@@ -77,14 +79,14 @@ private:
 void check_good(const json& score)
 {
     CAPTURE(score.dump(1));
-    const json& all = score["all"];
+    const json& all = score;
     CHECK(all["completeness_percent"] > 97);
     CHECK(all["within"][1]["percent"] > 92);
     CHECK(all["nmad_m"] < 0.15);
     // What a pair cannot see of the pointing error moves everything, but not by much.
-    CHECK(std::abs(score["shift"]["east_m"].get<double>()) < 1.5);
-    CHECK(std::abs(score["shift"]["north_m"].get<double>()) < 1.5);
-    CHECK(std::abs(score["shift"]["up_m"].get<double>()) < 6);
+    CHECK(std::abs(all["shift"]["east_m"].get<double>()) < 1.5);
+    CHECK(std::abs(all["shift"]["north_m"].get<double>()) < 1.5);
+    CHECK(std::abs(all["shift"]["up_m"].get<double>()) < 6);
 }
 
 double mean_of(const std::string& raster)
