@@ -29,7 +29,8 @@ CPLStringList cog_options(const std::vector<std::string>& given)
     options.SetNameValue("BIGTIFF", "IF_SAFER");
     const char* compressions =
         GDALGetMetadataItem(GDALGetDriverByName("COG"), GDAL_DMD_CREATIONOPTIONLIST, nullptr);
-    if (compressions != nullptr && std::string(compressions).find("ZSTD") != std::string::npos) {
+    if (compressions != nullptr &&
+        std::string(compressions).find("ZSTD") != std::string::npos) {
         options.SetNameValue("COMPRESS", "ZSTD");
     }
     static constexpr std::array<const char*, 3> kShared{"COMPRESS", "LEVEL", "BIGTIFF"};

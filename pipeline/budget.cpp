@@ -87,7 +87,8 @@ std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_give
 
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
-    const int floats = 1 + job.geometry.height_per_px_m.has_value() + !job.outputs.depth.empty();
+    const int floats =
+        1 + job.geometry.height_per_px_m.has_value() + !job.outputs.depth.empty();
     return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty()) +
            (job.satellite ? satellite_output_bytes(job) : 0);
 }
@@ -124,8 +125,8 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
     budget.refine_bytes = kBaseBytes + refine_bytes(shape, job.matcher, budget.threads);
     if (job.satellite) {
-        budget.refine_bytes = std::max(budget.refine_bytes,
-                                       kBaseBytes + satellite_bytes(job, budget.threads));
+        budget.refine_bytes =
+            std::max(budget.refine_bytes, kBaseBytes + satellite_bytes(job, budget.threads));
     }
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =

@@ -27,8 +27,7 @@ std::optional<PointingModel> read_pointing(ConfigSection& section)
         {"shift", PointingModel::shift},
         {"affine", PointingModel::affine},
         {"none", std::nullopt}};
-    return kModels.at(
-        section.choice("pointing", "auto", {"auto", "shift", "affine", "none"}));
+    return kModels.at(section.choice("pointing", "auto", {"auto", "shift", "affine", "none"}));
 }
 
 std::optional<geometry::HeightSpan> read_heights(ConfigSection& section)
@@ -97,8 +96,8 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     SatelliteOptions options;
     options.search.heights = read_heights(geometry);
     options.search.pointing = read_pointing(geometry);
-    options.search.largest_pointing_px = geometry.number(
-        "largest_pointing_px", defaults.search.largest_pointing_px, 1, 1000);
+    options.search.largest_pointing_px =
+        geometry.number("largest_pointing_px", defaults.search.largest_pointing_px, 1, 1000);
     options.search.gsd_m =
         geometry.number_or("epipolar_gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
     options.dsm_gsd_m =
@@ -110,9 +109,10 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     options.search.vertical = vertical == "ellipsoid" ? "" : vertical;
     if (kind != "rpc") {
         constexpr const char* kWhy = "is for geometry kind rpc only: leave it out";
-        refuse(geometry, first_given({"heights_m", "pointing", "largest_pointing_px",
-                                      "epipolar_gsd_m", "stored"},
-                                     options),
+        refuse(geometry,
+               first_given(
+                   {"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m", "stored"},
+                   options),
                kWhy);
         refuse(dsm, first_given({"gsd_m", "crs", "vertical"}, options), kWhy);
         return std::nullopt;

@@ -122,7 +122,8 @@ void log_summary(const MatchSummary& summary, const PlannedJob& planned)
     if (summary.dsm) {
         const dsm::DsmGrid& grid = summary.dsm->grid;
         spdlog::info("{}: {} x {} cells of {:g}, {:.1f} % of them with a height",
-                     planned.job.outputs.dsm.string(), grid.size.cols, grid.size.rows, grid.cell,
+                     planned.job.outputs.dsm.string(), grid.size.cols, grid.size.rows,
+                     grid.cell,
                      100.0 * static_cast<double>(summary.dsm->cells_with_value) /
                          static_cast<double>(grid.size.area()));
     }

@@ -20,10 +20,10 @@ CellBlock::CellBlock(const DsmGrid& grid, const Rect& cells, const CellOptions& 
 
 void CellBlock::add(double x, double y, double height, std::uint8_t confidence)
 {
-    const double col = std::floor(x / grid_.cell) -
-                       static_cast<double>(grid_.first_col + bins_.col);
-    const double row = std::floor(-y / grid_.cell) -
-                       static_cast<double>(grid_.first_row + bins_.row);
+    const double col =
+        std::floor(x / grid_.cell) - static_cast<double>(grid_.first_col + bins_.col);
+    const double row =
+        std::floor(-y / grid_.cell) - static_cast<double>(grid_.first_row + bins_.row);
     if (col >= 0 && row >= 0 && col < bins_.cols && row < bins_.rows) {
         const auto bin = static_cast<std::uint32_t>(row) * std::uint32_t(bins_.cols) +
                          static_cast<std::uint32_t>(col);
@@ -62,8 +62,8 @@ void CellBlock::gather(int row, int col, std::vector<Member>& members) const
             const double distance2 = (p.x - x) * (p.x - x) + (p.y - y) * (p.y - y);
             if (distance2 < radius2) {
                 const double near = 1 - distance2 / radius2;
-                members.push_back({p.height, p.x, p.y, near * near * p.confidence,
-                                   double(p.confidence)});
+                members.push_back(
+                    {p.height, p.x, p.y, near * near * p.confidence, double(p.confidence)});
             }
         }
     }

@@ -71,7 +71,7 @@ private:
     DsmGrid grid_;
     tiling::Rect cells_;
     CellOptions options_;
-    int margin_;       ///< cells round the block whose points count
+    int margin_;        ///< cells round the block whose points count
     tiling::Rect bins_; ///< the block with its margin
     Bounds reach_;
     std::vector<Point> points_;

@@ -46,7 +46,8 @@ DsmGrid make_grid(const Bounds& bounds, double cell)
     grid.cell = cell;
     grid.first_col = static_cast<std::int64_t>(std::floor(bounds.west / cell));
     grid.first_row = static_cast<std::int64_t>(std::floor(-bounds.north / cell));
-    const double cols = std::floor(bounds.east / cell) - static_cast<double>(grid.first_col) + 1;
+    const double cols =
+        std::floor(bounds.east / cell) - static_cast<double>(grid.first_col) + 1;
     const double rows =
         std::floor(-bounds.south / cell) - static_cast<double>(grid.first_row) + 1;
     constexpr double kMost = std::numeric_limits<int>::max();
@@ -60,7 +61,8 @@ DsmGrid make_grid(const Bounds& bounds, double cell)
 
 double cell_for(double gsd)
 {
-    static constexpr std::array<int, 12> kDigits{10, 12, 15, 20, 25, 30, 40, 50, 60, 70, 80, 100};
+    static constexpr std::array<int, 12> kDigits{10, 12, 15, 20, 25, 30,
+                                                 40, 50, 60, 70, 80, 100};
     const double power = std::pow(10.0, std::floor(std::log10(gsd)) - 1);
     const double digits = gsd / power;
     const int nearest =

@@ -31,8 +31,8 @@ struct FramePoint {
 /// pair and then only read: its lattices define which pixel of a source a pixel of the frame
 /// shows, so that everybody who has them agrees to the last bit.
 struct EpipolarFrame {
-    tiling::Size size;    ///< of both resampled images
-    double gsd_m = 0;     ///< step of the grid along rows, and across them at its centre
+    tiling::Size size;       ///< of both resampled images
+    double gsd_m = 0;        ///< step of the grid along rows, and across them at its centre
     double images_gsd_m = 0; ///< geometric mean of both images' ground sampling distances
     double px_per_m = 0;  ///< disparity of a metre of height above the surface, at the centre
     double angle_rad = 0; ///< direction of the rows at the centre, anticlockwise from east

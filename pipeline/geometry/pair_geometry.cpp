@@ -130,12 +130,17 @@ ReferenceSurface surface(const json& j)
 
 json written(const EpipolarFrame& f)
 {
-    return {{"rows", f.size.rows},      {"cols", f.size.cols},
+    return {{"rows", f.size.rows},
+            {"cols", f.size.cols},
             {"images_gsd_m", f.images_gsd_m},
-            {"gsd_m", f.gsd_m},         {"px_per_m", f.px_per_m},
-            {"angle_rad", f.angle_rad}, {"below_m", f.below_m},
-            {"above_m", f.above_m},     {"lattice_error_px", f.lattice_error_px},
-            {"map", written(f.map)},    {"left", written(f.left)},
+            {"gsd_m", f.gsd_m},
+            {"px_per_m", f.px_per_m},
+            {"angle_rad", f.angle_rad},
+            {"below_m", f.below_m},
+            {"above_m", f.above_m},
+            {"lattice_error_px", f.lattice_error_px},
+            {"map", written(f.map)},
+            {"left", written(f.left)},
             {"right", written(f.right)}};
 }
 

@@ -127,7 +127,8 @@ std::vector<dsm::Bounds> write_heights(const MatchedPair& pair, const DsmOptions
                                        const std::vector<Rect>& pieces, Size frame)
 {
     Rasters rasters(frame);
-    rasters.add(paths.height, io::PixelType::float32, float_options(options, "height", "metre"));
+    rasters.add(paths.height, io::PixelType::float32,
+                float_options(options, "height", "metre"));
     rasters.add(paths.residual, io::PixelType::float32,
                 float_options(options, "distance of the rays", "pixel"));
     std::vector<dsm::Bounds> bounds(pieces.size());
@@ -166,9 +167,8 @@ dsm::CellOptions cell_options(double gsd_m, double cell_m, double units_per_m)
 }
 
 DsmSummary write_cells(const MatchedPair& pair, const DsmOptions& options,
-                       const DsmPaths& paths, Readers& readers,
-                       const std::vector<Rect>& pieces, const std::vector<dsm::Bounds>& bounds,
-                       const dsm::DsmGrid& grid)
+                       const DsmPaths& paths, Readers& readers, const std::vector<Rect>& pieces,
+                       const std::vector<dsm::Bounds>& bounds, const dsm::DsmGrid& grid)
 {
     const auto with_place = [&](io::RasterOptions raster) {
         raster.geo = {grid.transform(), options.map_wkt};
@@ -184,7 +184,8 @@ DsmSummary write_cells(const MatchedPair& pair, const DsmOptions& options,
     rasters.add(paths.spread, io::PixelType::float32,
                 with_place(float_options(options, "spread of a cell's points", "metre")));
     const auto blocks = pieces_of(grid.size, kGroundPiece);
-    const dsm::CellOptions how = cell_options(pair.gsd_m, options.cell_m, options.map_units_per_m);
+    const dsm::CellOptions how =
+        cell_options(pair.gsd_m, options.cell_m, options.map_units_per_m);
     DsmSummary summary{grid, 0};
     in_order(
         blocks.size(),
@@ -227,8 +228,7 @@ DsmSummary write_dsm(const MatchedPair& pair, const DsmOptions& options, const D
                                          "show nothing alike within the range of heights",
                                          pair.disparity.string()));
     }
-    const dsm::DsmGrid grid =
-        dsm::make_grid(all, options.cell_m * options.map_units_per_m);
+    const dsm::DsmGrid grid = dsm::make_grid(all, options.cell_m * options.map_units_per_m);
     const DsmSummary summary = write_cells(pair, options, paths, readers, pieces, bounds, grid);
     readers.clear();
     io::make_cloud_optimized(paths.dsm.string(), options.creation_options);
@@ -242,11 +242,11 @@ std::int64_t dsm_bytes(double gsd_m, double cell_m, int threads)
     constexpr std::int64_t kCellBytes = 4 + 4 + 1 + 1 + 8;
     const double per_cell = std::max(1.0, cell_m * cell_m / (gsd_m * gsd_m));
     // Surfaces that lie above each other, as facades do, bring more points to a cell.
-    const auto points = static_cast<std::int64_t>(
-        static_cast<double>(kGroundPiece.area()) * per_cell * 2.5);
-    return pieces_in_flight(threads) * (kFramePiece.area() * kPointBytes +
-                                        points * kStoredPoint +
-                                        kGroundPiece.area() * kCellBytes);
+    const auto points =
+        static_cast<std::int64_t>(static_cast<double>(kGroundPiece.area()) * per_cell * 2.5);
+    return pieces_in_flight(threads) *
+           (kFramePiece.area() * kPointBytes + points * kStoredPoint +
+            kGroundPiece.area() * kCellBytes);
 }
 
 } // namespace hsgm::pipeline

@@ -58,8 +58,7 @@ void in_order(std::size_t count, const Compute& compute, const Write& write)
                     return std::make_shared<Computed>(Computed{i, compute(i)});
                 }) &
             tbb::make_filter<std::shared_ptr<Computed>, void>(
-                tbb::filter_mode::serial_in_order,
-                [&](const std::shared_ptr<Computed>& done) {
+                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Computed>& done) {
                     write(done->index, done->result);
                 }));
 }

@@ -11,9 +11,10 @@ PairSources open_sources(const Job& job)
                 std::make_unique<FileSource>(io::RasterSource(job.right))};
     }
     const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
-    return {std::make_unique<ResampledSource>(io::RasterSource(job.left), frame.left, frame.size),
-            std::make_unique<ResampledSource>(io::RasterSource(job.right), frame.right,
-                                              frame.size)};
+    return {
+        std::make_unique<ResampledSource>(io::RasterSource(job.left), frame.left, frame.size),
+        std::make_unique<ResampledSource>(io::RasterSource(job.right), frame.right,
+                                          frame.size)};
 }
 
 } // namespace hsgm::pipeline

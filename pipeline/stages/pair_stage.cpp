@@ -107,7 +107,8 @@ void prepare_images(const PlannedJob& planned, const RunLayout& layout, const Ow
     const PairSources sources = open_sources(planned.job);
     const std::string stamp = stamp_of(planned); // whoever touches them from now on is noticed
     PairChecksums checksums;
-    PreparedPair images(*sources.left, *sources.right, planned.pyramid_levels, layout.pair(), checksums);
+    PreparedPair images(*sources.left, *sources.right, planned.pyramid_levels, layout.pair(),
+                        checksums);
     if (durable) {
         images.sync();
     }

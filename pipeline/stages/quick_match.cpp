@@ -110,13 +110,12 @@ Image<float> quick_match(const Image<double>& left, const Image<double>& right,
     const tiling::Rect all = rect_of(left.size());
     matcher::TileMatch match = matcher.match_tile(all, images, *coarse);
     const matcher::RefineSupport support = matcher::refine_support(all, traits.shape, options);
-    const matcher::RefineInput input{
-        patch_of(all, std::move(match.disparity_q8)),
-        patch_of(all, std::move(match.confidence)),
-        patch_of(all, std::move(match.reasons)),
-        keys(match.right_keys, support.right_keys),
-        a.levels.front(),
-        b.levels.front()};
+    const matcher::RefineInput input{patch_of(all, std::move(match.disparity_q8)),
+                                     patch_of(all, std::move(match.confidence)),
+                                     patch_of(all, std::move(match.reasons)),
+                                     keys(match.right_keys, support.right_keys),
+                                     a.levels.front(),
+                                     b.levels.front()};
     matcher::Refined refined = matcher::refine(all, input, traits.shape, options);
     for (std::int64_t i = 0; i < left.size().area(); ++i) {
         if (refined.confidence.data()[i] < least_confidence) { // 0 where there is no value

@@ -44,9 +44,9 @@ void plan_satellite(Job& job)
 {
     const std::string& stored = job.satellite->stored;
     job.satellite->pair = std::make_shared<PairGeometry>(
-        stored.empty() ? find_pair_geometry({job.left, {}}, {job.right, {}},
-                                            job.satellite->search)
-                       : read_geometry(stored, job));
+        stored.empty()
+            ? find_pair_geometry({job.left, {}}, {job.right, {}}, job.satellite->search)
+            : read_geometry(stored, job));
     job.disparity = job.satellite->pair->disparity;
 }
 
@@ -55,9 +55,9 @@ DsmSummary write_satellite_heights(const Job& job)
     const PairGeometry& pair = *job.satellite->pair;
     const MapProjection map = MapProjection::from_text(pair.output_map);
     const OutputPaths& o = job.outputs;
-    return write_dsm({o.disparity, o.confidence, &pair.ground, pair.frame.gsd_m},
-                     dsm_options(job, map),
-                     {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
+    return write_dsm(
+        {o.disparity, o.confidence, &pair.ground, pair.frame.gsd_m}, dsm_options(job, map),
+        {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
 }
 
 std::int64_t satellite_bytes(const Job& job, int threads)
@@ -71,9 +71,10 @@ std::int64_t satellite_output_bytes(const Job& job)
     constexpr double kCellBytes = 4 + 4 + 1 + 1 + 1;
     // The DSM of a frame that lies aslant on the map is at most twice as large; and the
     // cloud-optimized one is made beside the plain one, with overviews.
-    const double cells = static_cast<double>(frame.size.area()) * 2 *
-                         std::pow(frame.gsd_m / cell_m(job), 2);
-    return frame.size.area() * 8 + static_cast<std::int64_t>(cells * (kCellBytes + 4 * 4.0 / 3));
+    const double cells =
+        static_cast<double>(frame.size.area()) * 2 * std::pow(frame.gsd_m / cell_m(job), 2);
+    return frame.size.area() * 8 +
+           static_cast<std::int64_t>(cells * (kCellBytes + 4 * 4.0 / 3));
 }
 
 } // namespace hsgm::pipeline

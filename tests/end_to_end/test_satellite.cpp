@@ -64,12 +64,12 @@ public:
     }
     json score(const std::string& result) const
     {
-        return json::parse(hsgm_does({"evaluate", "dsm", folder_ / (result + "/dsm.tif"),
-                                      folder_ / "scene/truth_dsm.tif", "--mask",
-                                      folder_ / "scene/truth_visible.tif", "--mask-bits", "3",
-                                      "--classes", folder_ / "scene/truth_classes.tif",
-                                      "--align-classes", "0", "--json"})
-                               .out);
+        return json::parse(
+            hsgm_does({"evaluate", "dsm", folder_ / (result + "/dsm.tif"),
+                       folder_ / "scene/truth_dsm.tif", "--mask",
+                       folder_ / "scene/truth_visible.tif", "--mask-bits", "3", "--classes",
+                       folder_ / "scene/truth_classes.tif", "--align-classes", "0", "--json"})
+                .out);
     }
 
 private:
@@ -121,15 +121,15 @@ TEST_CASE("two raw images with RPCs become a DSM, the same for every tiling")
     CHECK(first.err.find("pointing mended by ") != std::string::npos);
     check_good(place.score("result"));
     // Other tiles, and the geometry from the earlier run.
-    REQUIRE(place.run("again", {"--tile-size", "100", "--set",
-                                "geometry.stored=" + place / "result/geometry.json"})
+    REQUIRE(place
+                .run("again", {"--tile-size", "100", "--set",
+                               "geometry.stored=" + place / "result/geometry.json"})
                 .code == 0);
     const Snapshot result = snapshot(place / "result");
     const Snapshot again = snapshot(place / "again");
-    for (const char* file :
-         {"disparity.tif", "confidence.tif", "reasons.tif", "height.tif", "residual.tif",
-          "dsm.tif", "dsm.confidence.tif", "dsm.points.tif", "dsm.spread.tif", "hillshade.tif",
-          "geometry.json"}) {
+    for (const char* file : {"disparity.tif", "confidence.tif", "reasons.tif", "height.tif",
+                             "residual.tif", "dsm.tif", "dsm.confidence.tif", "dsm.points.tif",
+                             "dsm.spread.tif", "hillshade.tif", "geometry.json"}) {
         CAPTURE(file);
         REQUIRE(result.contains(file));
         CHECK(result.at(file) == again.at(file));
@@ -163,10 +163,11 @@ TEST_CASE("raw images may be swapped and turned, and maps and datums chosen")
                                  "pair.right=" + place / "scene/left.tif"})
                 .code == 0);
     check_good(place.score("swapped"));
-    REQUIRE(place
-                .run("other", {"--set", "dsm.crs=EPSG:32634", "--set", "dsm.vertical=EPSG:5773",
-                               "--set", "dsm.gsd_m=2", "--set", "geometry.heights_m=[300, 360]"})
-                .code == 0);
+    REQUIRE(
+        place
+            .run("other", {"--set", "dsm.crs=EPSG:32634", "--set", "dsm.vertical=EPSG:5773",
+                           "--set", "dsm.gsd_m=2", "--set", "geometry.heights_m=[300, 360]"})
+            .code == 0);
     const json info = gdalinfo(place / "other/dsm.tif");
     CHECK(info["geoTransform"][1] == 2.0);
     CHECK(std::fmod(info["geoTransform"][0].get<double>(), 2.0) == 0.0);
@@ -198,12 +199,13 @@ TEST_CASE("raw pairs that make no DSM are refused in one sentence")
     says(place.run("r", {"--set", "dsm.vertical=EGM2008"}), 2, "is not installed");
     says(place.run("r", {"--set", "geometry.stored=" + place / "scene.yaml"}), 3,
          "the stored geometry cannot be read");
-    says(place.run("r", {"--set", "geometry.kind=rectified", "--set", "matcher.disparity=[0, 9]",
-                         "--set", "dsm.gsd_m=1"}),
+    says(place.run("r", {"--set", "geometry.kind=rectified", "--set",
+                         "matcher.disparity=[0, 9]", "--set", "dsm.gsd_m=1"}),
          2, "'dsm.gsd_m' is for geometry kind rpc only");
-    says(place.run("r", {"--set", "geometry.kind=rectified", "--set", "matcher.disparity=[0, 9]",
-                         "--set", "pair.left={path: scene/left.tif, rpc: x_RPC.TXT}"}),
-         2, "'pair.left.rpc' is for geometry kind rpc only");
+    says(
+        place.run("r", {"--set", "geometry.kind=rectified", "--set", "matcher.disparity=[0, 9]",
+                        "--set", "pair.left={path: scene/left.tif, rpc: x_RPC.TXT}"}),
+        2, "'pair.left.rpc' is for geometry kind rpc only");
     says(place.run("r", {"--set", "pair.left={path: scene/left.tif, rpc: none_RPC.TXT}"}), 3,
          "none_RPC.TXT");
     CHECK_FALSE(std::filesystem::exists(place / "r"));

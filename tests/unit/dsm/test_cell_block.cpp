@@ -80,8 +80,8 @@ TEST_CASE("nearer and more confident points count for more")
                                 {{0.5, 0.0, 10, 100}, {0.5 + d, -0.5, 10.5, 100}});
     CHECK(near.height(0, 0) == Approx(10 + 0.5 * 0.25 / (0.25 + 0.5625)));
     CHECK(near.points(0, 0) == 2);
-    const Cells sure = cells_of(metre_grid(1, 1), {0, 0, 1, 1},
-                                {{0.25, -0.5, 10, 50}, {0.75, -0.5, 11, 150}});
+    const Cells sure =
+        cells_of(metre_grid(1, 1), {0, 0, 1, 1}, {{0.25, -0.5, 10, 50}, {0.75, -0.5, 11, 150}});
     CHECK(sure.height(0, 0) == Approx(10.75));
     CHECK(sure.confidence(0, 0) == 125);
     CHECK(sure.spread(0, 0) == Approx(std::sqrt(0.25 * 0.75 * 0.75 + 0.75 * 0.25 * 0.25)));
