@@ -1,5 +1,6 @@
 #include "pipeline/budget.h"
 
+#include "io/hillshade.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
@@ -85,6 +86,15 @@ std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_give
     return text;
 }
 
+// What comes after the second pass: the DSM of a raw pair, and shading.
+std::int64_t heights_bytes(const Job& job, const matcher::PairShape& shape, int threads)
+{
+    if (job.satellite) {
+        return satellite_bytes(job, threads);
+    }
+    return job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shape.left);
+}
+
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
     const int floats =
@@ -123,11 +133,9 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.prepare_bytes =
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
-    budget.refine_bytes = kBaseBytes + refine_bytes(shape, job.matcher, budget.threads);
-    if (job.satellite) {
-        budget.refine_bytes =
-            std::max(budget.refine_bytes, kBaseBytes + satellite_bytes(job, budget.threads));
-    }
+    budget.refine_bytes =
+        kBaseBytes + std::max(refine_bytes(shape, job.matcher, budget.threads),
+                              heights_bytes(job, shape, budget.threads));
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
         budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);

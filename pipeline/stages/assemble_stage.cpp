@@ -2,6 +2,7 @@
 
 #include "io/hillshade.h"
 #include "io/quicklook.h"
+#include "pipeline/error.h"
 #include "pipeline/stages/pair_stage.h"
 #include "pipeline/stages/satellite_stage.h"
 #include "pipeline/stages/tile_stage.h"
@@ -47,7 +48,10 @@ void write_hillshade(const OutputPaths& outputs)
     io::HillshadeOptions options;
     options.creation_options = outputs.creation_options;
     const auto& heights = outputs.dsm.empty() ? outputs.height : outputs.dsm;
-    io::write_hillshade(heights.string(), outputs.hillshade.string(), options);
+    if (!io::write_hillshade(heights.string(), outputs.hillshade.string(), options,
+                             [] { return !stop_is_requested(); })) {
+        check_stop();
+    }
 }
 
 // Pictures for people, made from the finished rasters.
