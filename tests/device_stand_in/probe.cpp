@@ -1,6 +1,6 @@
 // Kernels with one fault each, and one without: what the detectors of the stand-in must find.
 
-#include "cuda_runtime.h"
+#include <cuda_runtime.h>
 
 #include "tests/device_stand_in/control.h"
 

@@ -1,4 +1,4 @@
-#include "cuda_runtime.h"
+#include <cuda_runtime.h>
 
 #include "tests/device_stand_in/device_memory.h"
 

@@ -1,6 +1,6 @@
 #include "tests/catch.h"
 
-#include "cuda_runtime.h"
+#include <cuda_runtime.h>
 
 #include "tests/device_stand_in/control.h"
 

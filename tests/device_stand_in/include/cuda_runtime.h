@@ -3,7 +3,7 @@
 // Stands in for CUDA's header of the same name: the device language, and the part of the
 // runtime that hsgm calls. See tests/device_stand_in/control.h.
 
-#include "device_language.h"
+#include "tests/device_stand_in/device_language.h"
 
 #include <cstddef>
 #include <functional>
