@@ -1,0 +1,81 @@
+#pragma once
+
+#include "matcher/cuda/packed.cuh"
+#include "matcher/cuda/solve_job.h"
+
+namespace hsgm::matcher::cuda {
+
+/// Rows of a window's costs, or of its halo's, that are in reach at a time.
+struct Strip {
+    int row;
+    int rows;
+
+    HSGM_HOST_DEVICE int row_end() const { return row + rows; }
+};
+
+/// What all threads of a block know of the window that they solve.
+template <typename Cell>
+struct WindowFrame {
+    const SolveJob<Cell>* job;
+    Window window;
+    int first_col; ///< of the costs: core and halo on both sides
+    int end_col;
+    // Memory of the block.
+    int* task; ///< next piece of work of the strip
+    unsigned* penalties;
+    unsigned* keys;
+    unsigned* costs;
+    unsigned* sums;
+    Cell* parked;
+    Cell* checkpoints;
+
+    __device__ int words() const { return job->strips.words; }
+    __device__ bool is_padded() const { return window.count < 2 * words(); }
+};
+
+/// The pixels that paths of direction `d` run over: the core, and the halo on the sides that
+/// they come from.
+template <typename Cell>
+__device__ Area path_region(const SolveJob<Cell>& job, const Area& core, int d)
+{
+    const int h = job.halo_px;
+    const int dr = job.directions.row[d];
+    const int dc = job.directions.col[d];
+    const int row = most_of(core.row - (dr > 0 ? h : 0), 0);
+    const int col = most_of(core.col - (dc > 0 ? h : 0), 0);
+    const int row_end = least_of(core.row_end() + (dr < 0 ? h : 0), job.image.rows);
+    const int col_end = least_of(core.col_end() + (dc < 0 ? h : 0), job.image.cols);
+    return {row, col, row_end - row, col_end - col};
+}
+
+/// Lanes that share a pixel's disparities. The words of a pixel hold the disparities j and
+/// j + half of the range; lane g has the words g * kWords ... g * kWords + kWords - 1, so that
+/// a disparity's neighbours lie in the words before and after it, in the same half:
+///
+///     lane            0                   1          ...
+///     low halves      0 1 2 3 4 5 6 7     8 9 ...           half - 1
+///     high halves     half ...                          2 * half - 1
+template <int kGroup, int kWords>
+struct LaneGroup {
+    static constexpr int kGroupsPerWarp = kWarp / kGroup;
+
+    __device__ static int lane() { return static_cast<int>(threadIdx.x) % kGroup; }
+    __device__ static int group_in_warp()
+    {
+        return static_cast<int>(threadIdx.x) % kWarp / kGroup;
+    }
+    __device__ static int first_word() { return lane() * kWords; }
+
+    /// The least half of all words of all lanes of the group, in both halves.
+    __device__ static unsigned least_half(unsigned word)
+    {
+        word = lesser(word, swapped(word));
+#pragma unroll
+        for (int by = 1; by < kGroup; by *= 2) {
+            word = lesser(word, __shfl_xor_sync(kAllLanes, word, by));
+        }
+        return word;
+    }
+};
+
+} // namespace hsgm::matcher::cuda
