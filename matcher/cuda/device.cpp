@@ -11,7 +11,7 @@ namespace {
 using tiling::Rect;
 
 constexpr int kLeastCapability = 75;
-constexpr int kMostThreads = 512;
+constexpr int kMostThreads = 384;
 
 // One piece of work for whichever width the penalties need.
 template <typename Work>

@@ -32,7 +32,7 @@ struct DeviceInfo {
     std::int64_t free_bytes = 0;
     std::int64_t shared_bytes = 0; ///< that a block may have
     int multiprocessors = 0;
-    int block_threads = 512; ///< a multiple of 32 up to this; has no influence on results
+    int block_threads = 384; ///< a multiple of 32 up to this; has no influence on results
 };
 
 /// The devices that this build and this machine can use.

@@ -6,7 +6,7 @@
 
 namespace hsgm::matcher::cuda {
 
-constexpr int kMostThreads = 512;
+constexpr int kMostThreads = 384;
 
 /// A block solves one window, strip by strip.
 ///

@@ -114,7 +114,7 @@ private:
         }
         unsigned* to = frame_.costs + (row - strip_.row) * job_.strips.cost_row +
                        (col - frame_.first_col) * job_.strips.pixel_stride + lane;
-#pragma unroll
+#pragma unroll 1
         for (int i = 0; i < kWords; ++i) {
 #pragma unroll
             for (int k = 0; k < kPixels; ++k) {
