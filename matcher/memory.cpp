@@ -22,7 +22,7 @@ std::int64_t path_bytes(const Options& options)
     return options.fits_8_bits() ? 1 : 2;
 }
 
-// What a level keeps for the next finer one: winners, prior and start lines.
+// What a level keeps for the next finer one: winners and their medians, prior and start lines.
 std::int64_t kept_bytes(const Rect& windows, int count, const Options& options)
 {
     const std::int64_t cells = windows.area() * padded_count(count);
@@ -31,7 +31,7 @@ std::int64_t kept_bytes(const Rect& windows, int count, const Options& options)
     // for windows cut by the edge.
     const std::int64_t lines =
         cells * options.paths * path_bytes(options) * 4 / std::max(options.window_px, 1);
-    return 2 * windows.area() + prior + lines;
+    return (2 + 2) * windows.area() + prior + lines;
 }
 
 std::int64_t feature_bytes(const LevelSupport& s)

@@ -1,6 +1,5 @@
 #include "matcher/host/block.h"
 
-#include "matcher/host/winner.h"
 #include "matcher/kernel.h"
 
 #include <tbb/blocked_range.h>
@@ -84,64 +83,115 @@ int unsearched_cost(const Options& options)
     return std::min<int>(options.p2 + kUnsearchedMargin, std::numeric_limits<L>::max());
 }
 
+// What the paths of a block read and write.
+struct BlockVolumes {
+    Rect core;
+    CostVolume cost;
+    std::uint16_t* sums;
+};
+
+// One direction of a block.
+template <typename L>
+SweepJob<L> sweep_job(const LevelJob<L>& job, const BlockVolumes& volumes,
+                      const CoarseStart<L>* start, std::vector<LineStore<L>>* lines,
+                      std::size_t direction_number)
+{
+    SweepJob<L> sweep;
+    sweep.core = volumes.core;
+    sweep.image = rect_of(job.features->left_size);
+    sweep.cost = volumes.cost;
+    sweep.sums = volumes.sums;
+    sweep.tone = &job.features->left_tone;
+    sweep.penalties = penalties(*job.options);
+    sweep.start = start;
+    sweep.coarse_tone = job.coarser_tone;
+    sweep.spread_over_threads = job.whole;
+    sweep.direction_number = direction_number;
+    sweep.direction = directions(job.options->paths)[direction_number];
+    sweep.region = path_region(volumes.core, sweep.direction,
+                               job.whole ? 0 : job.options->halo_px, sweep.image);
+    sweep.first = direction_number == 0;
+    sweep.lines = lines != nullptr ? &(*lines)[direction_number] : nullptr;
+    return sweep;
+}
+
+WindowJob window_job(const LevelJob<std::uint8_t>& job, const BlockVolumes& volumes,
+                     const CoarseStart<std::uint8_t>* start,
+                     std::vector<LineStore<std::uint8_t>>* lines)
+{
+    WindowJob window;
+    window.core = volumes.core;
+    window.image = rect_of(job.features->left_size);
+    window.halo_px = job.options->halo_px;
+    window.paths = job.options->paths;
+    window.cost = volumes.cost;
+    window.p1 = job.options->p1;
+    window.penalties = job.penalties;
+    window.start = start;
+    window.sums = volumes.sums;
+    window.lines = lines;
+    return window;
+}
+
 } // namespace
 
 template <typename L>
 BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::DisparityRange range,
                       std::vector<LineStore<L>>& lines, BlockWorkspace<L>& workspace)
 {
-    const Rect image = rect_of(job.features->left_size);
     const CoarseStart<L> start{job.coarser, unsearched_cost<L>(*job.options)};
-    SweepJob<L> sweep_job;
-    sweep_job.core = core;
-    sweep_job.image = image;
-    sweep_job.cost = compute_costs(job, core, range, workspace);
-    sweep_job.tone = &job.features->left_tone;
-    sweep_job.penalties = penalties(*job.options);
-    sweep_job.start = job.coarser != nullptr ? &start : nullptr;
-    sweep_job.coarse_tone = job.coarser_tone;
-    sweep_job.spread_over_threads = job.whole;
-    const int stride = sweep_job.cost.stride;
-    sweep_job.sums = workspace.sums.need(std::size_t(core.area()) * std::size_t(stride));
+    const CoarseStart<L>* start_or_none = job.coarser != nullptr ? &start : nullptr;
+    const CostVolume cost = compute_costs(job, core, range, workspace);
+    const BlockVolumes volumes{
+        core, cost, workspace.sums.need(std::size_t(core.area()) * std::size_t(cost.stride))};
     const auto paths = directions(job.options->paths);
-    const StartLines start_lines{job.options->window_px, job.options->halo_px};
-    lines.reserve(paths.size());
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        sweep_job.direction = paths[i];
-        sweep_job.direction_number = i;
-        sweep_job.region =
-            path_region(core, paths[i], job.whole ? 0 : job.options->halo_px, image);
-        sweep_job.first = i == 0;
-        sweep_job.lines = nullptr;
-        if (job.keep_lines) {
-            sweep_job.lines = &lines.emplace_back(core, paths[i], start_lines, stride);
+    if (job.keep_lines) {
+        const StartLines start_lines{job.options->window_px, job.options->halo_px};
+        lines.reserve(paths.size());
+        for (const Direction r : paths) {
+            lines.emplace_back(core, r, start_lines, cost.stride);
         }
-        sweep(sweep_job, workspace.sweep);
     }
-    return {core, range, stride, sweep_job.sums};
+    auto* const kept = job.keep_lines ? &lines : nullptr;
+    std::size_t done = 0;
+    if constexpr (sizeof(L) == 1) {
+        if (!job.whole && solves_by_passes<L>(*job.options)) {
+            window_paths(window_job(job, volumes, start_or_none, kept), workspace.window);
+            done = std::min<std::size_t>(paths.size(), kWindowPaths);
+        }
+    }
+    for (std::size_t i = done; i < paths.size(); ++i) {
+        sweep(sweep_job(job, volumes, start_or_none, kept, i), workspace.sweep);
+    }
+    return {core, range, cost.stride, volumes.sums};
 }
 
 template <typename L>
-void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result)
+void keep_block(const LevelJob<L>& job, const BlockSums& sums, BlockResult<L>& result,
+                tiling::Patch<std::int16_t>& level_winners, BlockWorkspace<L>& workspace)
 {
     result.core = sums.core;
     result.range = sums.range;
     result.stride = sums.stride;
-    result.winner = tiling::Image<std::int16_t>(sums.core.size());
     if (job.keep_prior) {
         result.prior.resize(std::size_t(sums.core.area()) * std::size_t(sums.stride));
     }
+    const int cols = sums.core.cols;
     over_rows(job.whole, sums.core, [&](int begin, int end) {
+        Buffer<Winner> own;
+        Buffer<Winner>& buffer = job.whole ? own : workspace.winners;
+        Winner* winners = buffer.need(static_cast<std::size_t>(cols));
         for (int row = begin; row < end; ++row) {
-            for (int col = sums.core.col; col < sums.core.col_end(); ++col) {
-                const auto s = sums.at(row, col);
-                const Winner winner = find_winner(s);
-                result.winner(row - sums.core.row, col - sums.core.col) =
-                    static_cast<std::int16_t>(sums.range.min + winner.index);
-                if (job.keep_prior) {
-                    prior_from_sums(s, winner.sum, job.options->paths,
-                                    result.prior_at(row, col));
-                }
+            const SumsRow sums_row{sums.at(row, sums.core.col), cols, sums.stride,
+                                   sums.range.count()};
+            find_winners(sums_row, winners);
+            std::int16_t* to = &level_winners.at(row, sums.core.col);
+            for (int i = 0; i < cols; ++i) {
+                to[i] = static_cast<std::int16_t>(sums.range.min + winners[i].index);
+            }
+            if (job.keep_prior) {
+                prior_row(sums_row, winners, job.options->paths,
+                          result.prior_at(row, sums.core.col));
             }
         }
     });
@@ -154,8 +204,10 @@ template BlockSums solve_block(const LevelJob<std::uint16_t>&, const Rect&,
                                tiling::DisparityRange, std::vector<LineStore<std::uint16_t>>&,
                                BlockWorkspace<std::uint16_t>&);
 template void keep_block(const LevelJob<std::uint8_t>&, const BlockSums&,
-                         BlockResult<std::uint8_t>&);
+                         BlockResult<std::uint8_t>&, tiling::Patch<std::int16_t>&,
+                         BlockWorkspace<std::uint8_t>&);
 template void keep_block(const LevelJob<std::uint16_t>&, const BlockSums&,
-                         BlockResult<std::uint16_t>&);
+                         BlockResult<std::uint16_t>&, tiling::Patch<std::int16_t>&,
+                         BlockWorkspace<std::uint16_t>&);
 
 } // namespace hsgm::matcher::host

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "matcher/host/feature_planes.h"
 #include "matcher/matcher.h"
 
 #include <cstdint>
@@ -12,10 +13,9 @@ struct LevelFeatures {
     tiling::Size right_size;
     const LevelImages* images = nullptr;
     tiling::Patch<std::uint8_t> left_tone;
-    tiling::Patch<std::uint8_t> right_tone; ///< cost `hmi` only
     tiling::Patch<std::uint8_t> low_texture;
-    tiling::Patch<std::uint64_t> left_census; ///< census costs only
-    tiling::Patch<std::uint64_t> right_census;
+    FeaturePlanes left;  ///< what the matching cost reads
+    FeaturePlanes right; ///< the same, mirrored
 };
 
 /// The features of level `level` for matching the pixels of `aggregation`.

@@ -50,11 +50,19 @@ public:
         const int cols = count(core.col, core.col_end(), direction.col);
         row_values_ = std::size_t(rows) * std::size_t(core.cols) * std::size_t(stride);
         values_.resize(row_values_ +
-                       std::size_t(cols) * std::size_t(core.rows) * std::size_t(stride));
+                       std::size_t(cols) * std::size_t(core.rows) * std::size_t(stride) +
+                       kReadBeyond);
     }
 
     bool holds_row(int row) const { return lines_.holds(row, direction_.row); }
     bool holds_col(int col) const { return lines_.holds(col, direction_.col); }
+
+    /// The columns of the core for which holds_col is true: from first_col on, one a pitch.
+    int first_col() const
+    {
+        return direction_.col == 0 ? core_.col_end() : lines_.first(core_.col, direction_.col);
+    }
+    int col_pitch() const { return lines_.pitch(); }
 
     std::int64_t bytes() const { return static_cast<std::int64_t>(values_.size() * sizeof(L)); }
     /// The vector of a pixel for which holds_row or holds_col is true.
@@ -62,6 +70,9 @@ public:
     const L* at(int row, int col) const { return values_.data() + index(row, col); }
 
 private:
+    /// Whole vectors are read at the end of the last pixel.
+    static constexpr std::size_t kReadBeyond = 16;
+
     int count(int begin, int end, int step) const
     {
         const int first = step == 0 ? end : lines_.first(begin, step);
@@ -90,9 +101,8 @@ private:
 template <typename L>
 struct BlockResult {
     tiling::Rect core;
-    tiling::DisparityRange range; ///< the disparities searched
-    int stride = 0;               ///< elements kept for a pixel: padded_count(range.count())
-    tiling::Image<std::int16_t> winner;
+    tiling::DisparityRange range;    ///< the disparities searched
+    int stride = 0;                  ///< elements kept for a pixel: padded_count(range.count())
     std::vector<std::uint8_t> prior; ///< q of every core pixel; empty where nobody reads it
     std::vector<LineStore<L>> lines; ///< one for each direction
 
@@ -118,6 +128,8 @@ struct LevelResult {
     tiling::Rect windows; ///< covered part, whole windows clipped to the image
     int window_px = 0;    ///< 0: one block
     std::vector<BlockResult<L>> blocks;
+    tiling::Patch<std::int16_t> winners; ///< of `windows`
+    tiling::Patch<std::int16_t> medians; ///< of the winners (window_range.h); where pruning
 
     const BlockResult<L>& block_at(int row, int col) const
     {
@@ -129,11 +141,6 @@ struct LevelResult {
         const int block_row = row / window_px - windows.row / window_px;
         const int block_col = col / window_px - windows.col / window_px;
         return blocks[static_cast<std::size_t>(block_row * cols + block_col)];
-    }
-    int winner(int row, int col) const
-    {
-        const auto& block = block_at(row, col);
-        return block.winner(row - block.core.row, col - block.core.col);
     }
 };
 

@@ -63,9 +63,10 @@ TileMatch cut(const TileMatch& whole, const Rect& core, const PairShape& shape)
 template <typename L>
 std::int64_t CoarseSolutionOf<L>::bytes() const
 {
-    std::int64_t sum = tone.rect.area() + 11 * whole.core.area();
+    std::int64_t sum = tone.rect.area() + 11 * whole.core.area() +
+                       2 * (level.winners.rect.area() + level.medians.rect.area());
     for (const auto& block : level.blocks) {
-        sum += 2 * block.core.area() + static_cast<std::int64_t>(block.prior.size());
+        sum += static_cast<std::int64_t>(block.prior.size());
         for (const auto& line : block.lines) {
             sum += line.bytes();
         }
@@ -101,15 +102,17 @@ std::shared_ptr<const CoarseSolution> Levels<L>::solve_whole(const LevelImages& 
     result->level.size = image.size();
     result->level.windows = image;
     if (level > 0) {
-        keep_block(whole, sums, block);
+        result->level.winners = tiling::Patch<std::int16_t>(image);
+        keep_block(whole, sums, block, result->level.winners, workspace);
+        add_medians(result->level);
         result->tone = features.left_tone;
         return result;
     }
     TileOutput output(image, features, pair_);
     tbb::parallel_for(tbb::blocked_range<int>(0, image.rows, 16),
                       [&](const tbb::blocked_range<int>& rows) {
-                          Buffer<std::uint32_t> keys;
-                          output.add_rows(sums, rows.begin(), rows.end(), keys);
+                          OutputWorkspace own;
+                          output.add_rows(sums, rows.begin(), rows.end(), own);
                       });
     result->whole = output.take();
     return result;
@@ -119,7 +122,7 @@ template <typename L>
 tiling::DisparityRange Levels<L>::range_of(const LevelJob<L>& job, const Rect& window) const
 {
     return options_.prune && job.coarser != nullptr
-               ? window_range(*job.coarser, window, job.range)
+               ? window_range(job.coarser->medians, job.coarser->size, window, job.range)
                : job.range;
 }
 
@@ -133,13 +136,24 @@ LevelResult<L> Levels<L>::solve_windows(const LevelJob<L>& job, const Rect& wind
     result.windows = windows;
     result.window_px = options_.window_px;
     result.blocks.resize(blocks.size());
+    result.winners = tiling::Patch<std::int16_t>(windows);
     over_windows(blocks.size(), [&](std::size_t i) {
         auto& kept = result.blocks[i];
-        const BlockSums sums = solve_block(job, blocks[i], range_of(job, blocks[i]), kept.lines,
-                                           workspaces.local());
-        keep_block(job, sums, kept);
+        auto& workspace = workspaces.local();
+        const BlockSums sums =
+            solve_block(job, blocks[i], range_of(job, blocks[i]), kept.lines, workspace);
+        keep_block(job, sums, kept, result.winners, workspace);
     });
+    add_medians(result);
     return result;
+}
+
+template <typename L>
+void Levels<L>::add_medians(LevelResult<L>& level) const
+{
+    if (options_.prune) {
+        level.medians = winner_medians(level.winners, level.size);
+    }
 }
 
 template <typename L>
@@ -153,7 +167,7 @@ TileMatch Levels<L>::solve_windows_to_tile(const LevelJob<L>& job, const Rect& w
         auto& workspace = workspaces.local();
         const BlockSums sums =
             solve_block(job, blocks[i], range_of(job, blocks[i]), none, workspace);
-        output.add(sums, workspace.keys);
+        output.add(sums, workspace.output);
     });
     return output.take();
 }
@@ -179,6 +193,11 @@ TileMatch Levels<L>::solve_tile(const Rect& core, std::span<const LevelImages> i
         LevelJob<L> level_job = job(level, features);
         level_job.coarser = coarser;
         level_job.coarser_tone = coarser_tone;
+        PenaltyMaps penalties;
+        if (solves_by_passes<L>(options_)) {
+            penalties = PenaltyMaps(features.left_tone, support[k].aggregation, options_);
+            level_job.penalties = &penalties;
+        }
         if (level == 0) {
             return solve_windows_to_tile(level_job, support[k].windows, core, workspaces);
         }

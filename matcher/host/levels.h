@@ -60,6 +60,7 @@ private:
                                  Workspaces<L>& workspaces) const;
     TileMatch solve_windows_to_tile(const LevelJob<L>& job, const tiling::Rect& windows,
                                     const tiling::Rect& core, Workspaces<L>& workspaces) const;
+    void add_medians(LevelResult<L>& level) const;
     tiling::DisparityRange range_of(const LevelJob<L>& job, const tiling::Rect& window) const;
 
     const PairTraits& pair_;

@@ -2,56 +2,51 @@
 
 #include "matcher/host/coarse_start.h"
 #include "matcher/host/hamming.h"
+#include "matcher/host/lookup.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace hsgm::matcher::host {
 
 namespace {
 
-/// Whole vectors are read at the end of a row.
-constexpr std::size_t kReadBeyond = 16;
-
-// The right row in the order of rising disparity: entry j belongs to right column
-// last_col - j, so that pixel x with disparity volume.range.min + i reads entry
-// (volume's last column - x) + i.
-struct RightRow {
-    int last_col;
-    int count;
-};
-
-RightRow right_row(const CostVolume& volume)
+// The right runs of a row, of which left pixel i meets entry cols - 1 - i + j at disparity
+// number j: in place where the image reaches that far, else copied, with entries that are not
+// valid where there is no image.
+void set_right(const FeaturePlanes& planes, const CostVolume& volume, int row, CostRow& out,
+               Buffer<std::uint8_t>& room)
 {
-    return {volume.rect.col_end() - 1 - volume.range.min,
-            volume.rect.cols + volume.range.count() - 1};
-}
-
-template <typename Value, typename Read>
-void fill_reversed(RightRow right, int image_cols, Value outside, Read read, Value* out)
-{
-    for (int j = 0; j < right.count; ++j) {
-        const int col = right.last_col - j;
-        out[j] = col >= 0 && col < image_cols ? read(col) : outside;
+    const int met = out.met();
+    const int last_col = volume.rect.col_end() - 1 - volume.range.min;
+    const int at = planes.rect().col_end() - 1 - last_col; // of the first entry in the runs
+    const int begin = std::clamp(-at, 0, met);             // entries with a pixel
+    const int end = std::clamp(planes.rect().cols - at, begin, met);
+    if (begin == 0 && end == met) {
+        out.right = planes.run(0, row) + at;
+        out.right_pitch = static_cast<std::size_t>(planes.rect().cols);
+        out.right_valid = planes.validity(row) + at;
+        return;
+    }
+    out.right_pitch = static_cast<std::size_t>(met) + FeaturePlanes::kReadBeyond;
+    const auto size = out.right_pitch * static_cast<std::size_t>(planes.planes() + 1);
+    std::uint8_t* to = room.need(size);
+    std::fill_n(to, size, std::uint8_t{0});
+    out.right = to;
+    out.right_valid = to + out.right_pitch * static_cast<std::size_t>(planes.planes());
+    for (int plane = 0; begin < end && plane <= planes.planes(); ++plane) {
+        std::copy_n(planes.run(plane, row) + at + begin, end - begin, to + begin);
+        to += out.right_pitch;
     }
 }
 
-void hmi_row(const LevelFeatures& features, const HmiTable& table, const CostVolume& volume,
-             int row, const std::uint8_t* right, const std::uint8_t* valid, std::uint8_t half,
-             std::uint8_t* costs)
+const std::uint8_t* padding(const CostRow& row, Buffer<std::uint8_t>& room)
 {
-    const int count = volume.range.count();
-    for (int i = 0; i < volume.rect.cols; ++i, costs += volume.stride) {
-        const int col = volume.rect.col + i;
-        const int first = volume.rect.cols - 1 - i;
-        const bool left_valid = is_valid(features.images->left.at(row, col));
-        const std::uint8_t tone = features.left_tone.at(row, col);
-        for (int j = 0; j < count; ++j) {
-            costs[j] =
-                left_valid && valid[first + j] != 0 ? table(tone, right[first + j]) : half;
-        }
-        std::fill(costs + count, costs + volume.stride, std::uint8_t{255});
-    }
+    std::uint8_t* bytes = room.need(static_cast<std::size_t>(row.stride));
+    std::fill_n(bytes, row.count, std::uint8_t{0});
+    std::fill(bytes + row.count, bytes + row.stride, std::uint8_t{255});
+    return bytes;
 }
 
 } // namespace
@@ -60,43 +55,27 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
                        const CostVolume& volume, int row, std::uint8_t* costs,
                        CostWorkspace& workspace)
 {
-    const RightRow right = right_row(volume);
-    const auto length = static_cast<std::size_t>(right.count);
-    const int image_cols = features.right_size.cols;
-    const auto half = static_cast<std::uint8_t>(traits(cost).max / 2);
-    std::uint8_t* valid = workspace.right_valid.need(length + kReadBeyond);
-    fill_reversed<std::uint8_t>(
-        right, image_cols, 0,
-        [&](int col) { return std::uint8_t(is_valid(features.images->right.at(row, col))); },
-        valid);
+    const FeaturePlanes& left = features.left;
+    const int left_at = volume.rect.col - left.rect().col;
+    CostRow r;
+    r.cols = volume.rect.cols;
+    r.count = volume.range.count();
+    r.stride = volume.stride;
+    r.half = static_cast<std::uint8_t>(traits(cost).max / 2);
+    r.left = left.run(0, row) + left_at;
+    r.left_pitch = static_cast<std::size_t>(left.rect().cols);
+    r.left_valid = left.validity(row) + left_at;
+    set_right(features.right, volume, row, r, workspace.right);
+    r.plain = r.count == r.stride &&
+              std::memchr(r.right_valid, 0, static_cast<std::size_t>(r.met())) == nullptr;
+    if (!r.plain) {
+        r.padding = padding(r, workspace.padding);
+    }
     if (cost == Cost::hmi) {
-        std::uint8_t* tone = workspace.right_tone.need(length);
-        fill_reversed<std::uint8_t>(
-            right, image_cols, 0, [&](int col) { return features.right_tone.at(row, col); },
-            tone);
-        hmi_row(features, *pair.hmi, volume, row, tone, valid, half, costs);
-        return;
+        lookup_costs(*pair.hmi, r, costs);
+    } else {
+        hamming_costs(cost, r, workspace.split, costs);
     }
-    std::uint64_t* words = workspace.right_census.need(length + kReadBeyond);
-    fill_reversed<std::uint64_t>(
-        right, image_cols, 0, [&](int col) { return features.right_census.at(row, col); },
-        words);
-    std::uint8_t* left_valid = workspace.left_valid.need(std::size_t(volume.rect.cols));
-    for (int i = 0; i < volume.rect.cols; ++i) {
-        left_valid[i] = is_valid(features.images->left.at(row, volume.rect.col + i));
-    }
-    HammingRow words_row;
-    words_row.left = &features.left_census.at(row, volume.rect.col);
-    words_row.left_valid = left_valid;
-    words_row.right = words;
-    words_row.right_valid = valid;
-    words_row.cols = volume.rect.cols;
-    words_row.count = volume.range.count();
-    words_row.stride = volume.stride;
-    words_row.doubled = cost == Cost::census5x5;
-    words_row.most = static_cast<std::uint8_t>(traits(cost).max);
-    words_row.half = half;
-    hamming_costs(words_row, costs);
 }
 
 template <typename L>

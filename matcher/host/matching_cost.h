@@ -9,10 +9,9 @@ namespace hsgm::matcher::host {
 
 /// Buffers of `matching_costs`, reused from window to window.
 struct CostWorkspace {
-    Buffer<std::uint64_t> right_census;
-    Buffer<std::uint8_t> right_tone;
-    Buffer<std::uint8_t> left_valid;
-    Buffer<std::uint8_t> right_valid;
+    Buffer<std::uint8_t> right;
+    Buffer<std::uint8_t> padding;
+    Buffer<std::uint8_t> split;
     Buffer<std::uint8_t> prior;
 };
 

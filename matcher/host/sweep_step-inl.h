@@ -26,27 +26,46 @@ constexpr std::size_t kGuard = 16;
 template <typename L>
 constexpr L kInfinite = std::numeric_limits<L>::max();
 
-// Adds the L of one vector to the 16-bit sums.
+// Adds the L of one vector, lanes i.. of a pixel, to its sums (laid out as in sums.h).
 template <class D, class V>
-HWY_INLINE void add_to_sums(D, V path, std::uint16_t* HWY_RESTRICT sums, bool first)
+HWY_INLINE void add_to_sums(D, V path, int i, int stride, std::uint16_t* HWY_RESTRICT sums,
+                            bool first)
 {
     using L = hn::TFromD<D>;
-    if constexpr (sizeof(L) == 1) {
-        const hn::Rebind<std::uint16_t, hn::Half<D>> d16;
-        const auto low = hn::PromoteTo(d16, hn::LowerHalf(hn::Half<D>(), path));
-        const auto high = hn::PromoteTo(d16, hn::UpperHalf(hn::Half<D>(), path));
-        const std::size_t half = hn::Lanes(d16);
-        if (first) {
-            hn::StoreU(low, d16, sums);
-            hn::StoreU(high, d16, sums + half);
-        } else {
-            hn::StoreU(hn::Add(hn::LoadU(d16, sums), low), d16, sums);
-            hn::StoreU(hn::Add(hn::LoadU(d16, sums + half), high), d16, sums + half);
+    std::uint16_t* even_sums = sums + i / 2;
+    std::uint16_t* odd_sums = even_sums + stride / 2;
+    const auto put = [&](auto d16, auto even, auto odd) HWY_ATTR {
+        if (!first) {
+            even = hn::SaturatedAdd(hn::LoadU(d16, even_sums), even);
+            odd = hn::SaturatedAdd(hn::LoadU(d16, odd_sums), odd);
         }
+        hn::StoreU(even, d16, even_sums);
+        hn::StoreU(odd, d16, odd_sums);
+    };
+    if constexpr (sizeof(L) == 1) {
+        const hn::Repartition<std::uint16_t, D> d16;
+        const auto pairs = hn::BitCast(d16, path);
+        put(d16, hn::And(pairs, hn::Set(d16, std::uint16_t{0xFF})), hn::ShiftRight<8>(pairs));
     } else {
-        const D d;
-        hn::StoreU(first ? path : hn::SaturatedAdd(hn::LoadU(d, sums), path), d, sums);
+        const hn::RepartitionToWide<D> d32;
+        const hn::Rebind<std::uint16_t, decltype(d32)> d16;
+        const auto pairs = hn::BitCast(d32, path);
+        put(d16, hn::TruncateTo(d16, hn::And(pairs, hn::Set(d32, 0xFFFFU))),
+            hn::TruncateTo(d16, hn::ShiftRight<16>(pairs)));
     }
+}
+
+// The least of eight (or fewer) 16-bit lanes. Where one instruction finds it, Highway 1.0
+// would spread it over all lanes before one is read.
+template <class V>
+HWY_INLINE std::uint16_t least_of_eight(V v)
+{
+#if HWY_TARGET <= HWY_SSE4
+    if constexpr (sizeof(v) == 16 && hn::MaxLanes(hn::DFromV<V>()) == 8) {
+        return static_cast<std::uint16_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(v.raw)));
+    }
+#endif
+    return hn::GetLane(hn::MinOfLanes(hn::DFromV<V>(), v));
 }
 
 // Folds a vector to 128 bits, pairs of bytes to 16-bit lanes, and asks for their minimum,
@@ -63,10 +82,9 @@ HWY_INLINE hn::TFromD<D> least_lane(D d, hn::Vec<D> v)
         if constexpr (sizeof(L) == 1) {
             const auto pairs = hn::BitCast(d16, v);
             const auto low = hn::And(pairs, hn::Set(d16, 0xFF));
-            return static_cast<L>(
-                hn::GetLane(hn::MinOfLanes(d16, hn::Min(low, hn::ShiftRight<8>(pairs)))));
+            return static_cast<L>(least_of_eight(hn::Min(low, hn::ShiftRight<8>(pairs))));
         } else {
-            return hn::GetLane(hn::MinOfLanes(d16, v));
+            return least_of_eight(v);
         }
     }
 }
@@ -112,7 +130,7 @@ struct Step {
             hn::StoreU(path, d, now + i);
             minimum = hn::Min(minimum, path);
             if (sums != nullptr) {
-                add_to_sums(d, path, sums + i, first);
+                add_to_sums(d, path, i, stride, sums, first);
             }
         }
         return least_lane(d, minimum);
@@ -129,7 +147,7 @@ struct Step {
             hn::StoreU(path, d, now + i);
             minimum = hn::Min(minimum, path);
             if (sums != nullptr) {
-                add_to_sums(d, path, sums + i, first);
+                add_to_sums(d, path, i, stride, sums, first);
             }
         }
         return least_lane(d, minimum);

@@ -1,6 +1,5 @@
 #include "matcher/host/tile_output.h"
 
-#include "matcher/host/winner.h"
 #include "matcher/kernel.h"
 #include "matcher/reasons.h"
 
@@ -11,6 +10,7 @@ namespace hsgm::matcher::host {
 namespace {
 
 constexpr std::size_t kLocks = 64;
+constexpr int kPartCols = 1024;
 
 } // namespace
 
@@ -26,82 +26,88 @@ TileOutput::TileOutput(const tiling::Rect& core, const LevelFeatures& features,
     result_.right_keys = tiling::Patch<std::uint32_t>(seen, kNoKey);
 }
 
-void TileOutput::add(const BlockSums& sums, Buffer<std::uint32_t>& keys)
+void TileOutput::add(const BlockSums& sums, OutputWorkspace& workspace)
 {
-    add_rows(sums, sums.core.row, sums.core.row_end(), keys);
+    add_rows(sums, sums.core.row, sums.core.row_end(), workspace);
 }
 
-void TileOutput::add_rows(const BlockSums& sums, int begin, int end,
-                          Buffer<std::uint32_t>& keys)
+void TileOutput::add_rows(const BlockSums& sums, int begin, int end, OutputWorkspace& workspace)
 {
     const auto part = intersect(sums.core, result_.core);
-    const auto first = static_cast<std::uint32_t>(sums.range.min - pair_.shape.asked.min);
-    // Keys of one row in the order of rising disparity: entry j is right column last_col - j.
-    const int count = part.cols + sums.range.count() - 1;
-    const int last_col = part.col_end() - 1 - sums.range.min;
     for (int row = std::max(begin, part.row); row < std::min(end, part.row_end()); ++row) {
-        std::uint32_t* row_keys = keys.need(static_cast<std::size_t>(count));
-        std::fill_n(row_keys, count, kNoKey);
-        for (int col = part.col; col < part.col_end(); ++col) {
-            add_pixel(sums, row, col);
-            if (is_valid(features_.images->left.at(row, col))) {
-                merge_keys(sums.at(row, col), first, row_keys + (part.col_end() - 1 - col));
-            }
+        // Parts short enough for the 16-bit pixel numbers of the right view's candidates.
+        for (int col = part.col; col < part.col_end(); col += kPartCols) {
+            add_part(sums, row, col, std::min(kPartCols, part.col_end() - col), workspace);
         }
-        merge_row(row, row_keys, last_col, count);
     }
 }
 
-void TileOutput::add_pixel(const BlockSums& sums, int row, int col)
+void TileOutput::add_part(const BlockSums& sums, int row, int col, int cols,
+                          OutputWorkspace& workspace)
 {
-    const auto s = sums.at(row, col);
-    const Winner winner = find_winner(s);
-    const int disparity = sums.range.min + winner.index;
-    const auto i = static_cast<std::size_t>(winner.index);
-    const bool inner = i > 0 && i + 1 < s.size();
+    const SumsRow part{sums.at(row, col), cols, sums.stride, sums.range.count()};
+    Winner* winners = workspace.winners.need(static_cast<std::size_t>(cols));
+    find_winners(part, winners);
     const int r = row - result_.core.row;
     const int c = col - result_.core.col;
-    result_.disparity_q8(r, c) =
-        inner ? subpixel_q8(disparity, s[i - 1], s[i], s[i + 1]) : disparity * 256;
-    const int rival = rival_sum(s, winner.index);
-    result_.confidence(r, c) =
-        static_cast<std::uint8_t>(rival < 0 ? 255 : confidence_of(winner.sum, rival));
-    result_.reasons(r, c) = reasons_of(row, col, disparity);
+    sum_results(part, winners, sums.range.min, workspace.results,
+                result_.disparity_q8.row(r) + c, result_.confidence.row(r) + c);
+    add_reasons(winners, sums.range.min, row, col, cols);
+    std::uint8_t* valid = workspace.valid.need(static_cast<std::size_t>(cols));
+    const std::uint16_t* left = &features_.images->left.at(row, col);
+    std::transform(left, left + cols, valid,
+                   [](std::uint16_t pixel) { return std::uint8_t(is_valid(pixel)); });
+    workspace.candidates.clear(cols, sums.stride);
+    workspace.candidates.merge(part, valid);
+    merge_right(part, sums.range.min, row, col, workspace.candidates);
 }
 
-std::uint16_t TileOutput::reasons_of(int row, int col, int winner) const
+void TileOutput::add_reasons(const Winner* winners, int range_min, int row, int col, int cols)
 {
     const auto asked = pair_.shape.asked;
     const int right_cols = pair_.shape.right.cols;
-    if (!is_valid(features_.images->left.at(row, col))) {
-        return kNodataLeft;
+    const std::uint16_t* left = &features_.images->left.at(row, col);
+    const std::uint8_t* low_texture = &features_.low_texture.at(row, col);
+    const tiling::Patch<std::uint16_t>& right = features_.images->right;
+    std::uint16_t* out = result_.reasons.row(row - result_.core.row) + (col - result_.core.col);
+    for (int i = 0; i < cols; ++i) {
+        const int x = col + i;
+        const int winner = range_min + winners[i].index;
+        const int counterpart = x - winner;
+        int reasons = low_texture[i] != 0 ? kLowTexture : 0;
+        if (asked.count() > 1 && (winner == asked.min || winner == asked.max)) {
+            reasons |= kRangeEnd;
+        }
+        if (x - asked.max > right_cols - 1 || x - asked.min < 0) {
+            reasons |= kOutside;
+        } else if (counterpart >= 0 && counterpart < right_cols &&
+                   !is_valid(right.at(row, counterpart))) {
+            reasons |= kNodataRight;
+        }
+        out[i] = static_cast<std::uint16_t>(is_valid(left[i]) ? reasons : kNodataLeft);
     }
-    int reasons = 0;
-    const int counterpart = col - winner;
-    if (col - asked.max > right_cols - 1 || col - asked.min < 0) {
-        reasons |= kOutside;
-    } else if (counterpart >= 0 && counterpart < right_cols &&
-               !is_valid(features_.images->right.at(row, counterpart))) {
-        reasons |= kNodataRight;
-    }
-    if (features_.low_texture.at(row, col) != 0) {
-        reasons |= kLowTexture;
-    }
-    if (asked.count() > 1 && (winner == asked.min || winner == asked.max)) {
-        reasons |= kRangeEnd;
-    }
-    return static_cast<std::uint16_t>(reasons);
 }
 
-void TileOutput::merge_row(int row, const std::uint32_t* keys, int last_col, int count)
+void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int col,
+                             const RightCandidates& candidates)
 {
     auto& target = result_.right_keys;
-    const std::scoped_lock lock(row_locks_[static_cast<std::size_t>(row) % kLocks]);
+    const auto asked_first = static_cast<std::uint32_t>(range_min - pair_.shape.asked.min);
+    const int last_col = col + part.cols - 1 - range_min;
     const int begin = std::max(0, last_col - (target.rect.col_end() - 1));
-    const int end = std::min(count, last_col - target.rect.col + 1);
-    for (int j = begin; j < end; ++j) {
-        std::uint32_t& key = target.at(row, last_col - j);
-        key = std::min(key, keys[j]);
+    const int end = std::min(part.cols + part.count - 1, last_col - target.rect.col + 1);
+    if (begin >= end) {
+        return;
+    }
+    const std::scoped_lock lock(row_locks_[static_cast<std::size_t>(row) % kLocks]);
+    std::uint32_t* keys = &target.at(row, last_col - begin);
+    for (int j = begin; j < end; ++j, --keys) {
+        const std::uint16_t pixel = candidates.pixel(j);
+        if (pixel != RightCandidates::kNobody) {
+            const auto index = static_cast<std::uint32_t>(j - (part.cols - 1 - pixel));
+            *keys =
+                std::min(*keys, std::uint32_t{candidates.sum(j)} << 16 | (asked_first + index));
+        }
     }
 }
 

@@ -1,25 +1,73 @@
 #pragma once
 
+#include "matcher/host/aligned.h"
+
 #include <cstdint>
-#include <span>
 
 namespace hsgm::matcher::host {
 
-/// The lowest index of the least sum; ties go to the lowest disparity.
+/// A row of pixels' sums, laid out as in sums.h; `count` of `stride` disparities are searched.
+struct SumsRow {
+    const std::uint16_t* sums = nullptr;
+    int cols = 0;
+    int stride = 0;
+    int count = 0;
+
+    const std::uint16_t* at(int col) const
+    {
+        return sums + static_cast<std::ptrdiff_t>(col) * stride;
+    }
+};
+
+/// The lowest index of the least sum, and the least sum two or more disparities away from it
+/// (-1 if there is none that far).
 struct Winner {
     int index;
     int sum;
+    int rival;
 };
-Winner find_winner(std::span<const std::uint16_t> sums);
 
-/// The least sum at least two disparities away from the winner; -1 if there is none.
-int rival_sum(std::span<const std::uint16_t> sums, int winner);
+/// The winner of every pixel of the row.
+void find_winners(const SumsRow& row, Winner* winners);
 
-/// keys[i] = min(keys[i], sums[i] << 16 | (first + i)): the right view's candidates.
-void merge_keys(std::span<const std::uint16_t> sums, std::uint32_t first, std::uint32_t* keys);
+/// q of every disparity (docs/algorithm.md, section 3), `stride` in natural order a pixel.
+void prior_row(const SumsRow& row, const Winner* winners, int paths, std::uint8_t* prior);
 
-/// q of every disparity (docs/algorithm.md, section 3) from the sums of a pixel.
-void prior_from_sums(std::span<const std::uint16_t> sums, int least, int paths,
-                     std::uint8_t* prior);
+/// Two planes, each `plane` long, of candidates with even and with odd numbers.
+struct CandidatePlanes {
+    int plane = 0;
+    std::uint16_t* sums = nullptr;
+    std::uint16_t* pixels = nullptr;
+};
+
+/// Candidates of the right view that one row of left pixels brings: for right pixel number j,
+/// counted from the right end, the least sum and which left pixel it is from. Pixel i with
+/// disparity index d meets number cols - 1 - i + d. Even and odd numbers lie apart, as the
+/// sums do.
+class RightCandidates {
+public:
+    static constexpr std::uint16_t kNobody = 0xFFFF;
+
+    /// Forgets everything; room for rows of this shape.
+    void clear(int cols, int stride);
+    /// The pixels of `row` for which `valid` is not 0; once after `clear`. Of equal sums the
+    /// left-most pixel's stays, which has the lowest disparity.
+    void merge(const SumsRow& row, const std::uint8_t* valid);
+
+    std::uint16_t sum(int number) const { return left_.sums[index(number)]; }
+    /// The left pixel, or kNobody.
+    std::uint16_t pixel(int number) const { return left_.pixels[index(number)]; }
+
+private:
+    std::size_t index(int number) const
+    {
+        return static_cast<std::size_t>((number % 2 != 0 ? left_.plane : 0) + number / 2);
+    }
+
+    Buffer<std::uint16_t> sums_;
+    Buffer<std::uint16_t> pixels_;
+    CandidatePlanes left_;  ///< of the row's left half, then of all
+    CandidatePlanes right_; ///< of its right half
+};
 
 } // namespace hsgm::matcher::host

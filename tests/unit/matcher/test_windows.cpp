@@ -1,7 +1,6 @@
 #include "tests/catch.h"
 
 #include "matcher/host/coarse_start.h"
-#include "matcher/host/level_result.h"
 #include "matcher/host/window_range.h"
 #include "matcher/kernel.h"
 #include "matcher/matcher.h"
@@ -20,16 +19,18 @@ using tiling::Rect;
 
 namespace {
 
-// A coarse level in one block, with winners as given.
-LevelResult<std::uint8_t> coarse_level(tiling::Size size, int winner)
+using Winners = tiling::Patch<std::int16_t>;
+
+Winners coarse_winners(tiling::Size size, int winner)
 {
-    LevelResult<std::uint8_t> level;
-    level.size = size;
-    level.windows = rect_of(size);
-    auto& block = level.blocks.emplace_back();
-    block.core = rect_of(size);
-    block.winner = tiling::Image<std::int16_t>(size, static_cast<std::int16_t>(winner));
-    return level;
+    return Winners(rect_of(size), static_cast<std::int16_t>(winner));
+}
+
+// The range of a window over a whole coarse level.
+DisparityRange range_over(const Winners& winners, const Rect& window, DisparityRange level)
+{
+    const tiling::Size size = winners.rect.size();
+    return window_range(winner_medians(winners, size), size, window, level);
 }
 
 std::vector<int> spread(const std::vector<int>& values, DisparityRange coarse,
@@ -83,39 +84,39 @@ TEST_CASE("spreading follows its definition for any two ranges")
 
 TEST_CASE("a window searches round its coarse disparities, in whole groups of 16")
 {
-    auto coarse = coarse_level({64, 64}, 20);
+    auto coarse = coarse_winners({64, 64}, 20);
     const DisparityRange level{0, 255};
     // 2 * 20 - 4 .. 2 * 20 + 1 + 4 are 10 disparities; 16 with 3 more below and 3 above.
-    CHECK(window_range(coarse, Rect{0, 0, 64, 64}, level) == DisparityRange{33, 48});
+    CHECK(range_over(coarse, Rect{0, 0, 64, 64}, level) == DisparityRange{33, 48});
     for (int row = 8; row < 24; ++row) {
         for (int col = 8; col < 24; ++col) {
-            coarse.blocks[0].winner(row, col) = 40;
+            coarse.at(row, col) = 40;
         }
     }
     // 36 .. 85 are 50; 64 with 7 more below.
-    CHECK(window_range(coarse, Rect{0, 0, 64, 64}, level) == DisparityRange{29, 92});
+    CHECK(range_over(coarse, Rect{0, 0, 64, 64}, level) == DisparityRange{29, 92});
     // A window elsewhere does not see them.
-    CHECK(window_range(coarse, Rect{64, 64, 64, 64}, level) == DisparityRange{33, 48});
+    CHECK(range_over(coarse, Rect{64, 64, 64, 64}, level) == DisparityRange{33, 48});
 }
 
 TEST_CASE("single outliers do not widen a window's range")
 {
-    auto coarse = coarse_level({64, 64}, 20);
-    coarse.blocks[0].winner(5, 5) = 100;
-    coarse.blocks[0].winner(20, 20) = 0;
-    CHECK(window_range(coarse, Rect{0, 0, 64, 64}, {0, 255}) == DisparityRange{33, 48});
+    auto coarse = coarse_winners({64, 64}, 20);
+    coarse.at(5, 5) = 100;
+    coarse.at(20, 20) = 0;
+    CHECK(range_over(coarse, Rect{0, 0, 64, 64}, {0, 255}) == DisparityRange{33, 48});
 }
 
 TEST_CASE("a window's range stays inside its level's")
 {
-    CHECK(window_range(coarse_level({32, 32}, 0), Rect{0, 0, 64, 64}, {0, 63}) ==
+    CHECK(range_over(coarse_winners({32, 32}, 0), Rect{0, 0, 64, 64}, {0, 63}) ==
           DisparityRange{0, 15});
-    CHECK(window_range(coarse_level({32, 32}, 31), Rect{0, 0, 64, 64}, {0, 63}) ==
+    CHECK(range_over(coarse_winners({32, 32}, 31), Rect{0, 0, 64, 64}, {0, 63}) ==
           DisparityRange{48, 63});
-    CHECK(window_range(coarse_level({32, 32}, -20), Rect{0, 0, 64, 64}, {-40, 23}) ==
+    CHECK(range_over(coarse_winners({32, 32}, -20), Rect{0, 0, 64, 64}, {-40, 23}) ==
           DisparityRange{-40, -25});
     // As wide as the level: the level's range itself, though no multiple of 16.
-    CHECK(window_range(coarse_level({32, 32}, 4), Rect{0, 0, 64, 64}, {0, 9}) ==
+    CHECK(range_over(coarse_winners({32, 32}, 4), Rect{0, 0, 64, 64}, {0, 9}) ==
           DisparityRange{0, 9});
 }
 
@@ -194,4 +195,43 @@ TEST_CASE("confidence is 1 to 255 and grows with the rival's distance")
     CHECK(confidence_of(0, 0) == 1);
     CHECK(confidence_of(0, 50) == 255);
     CHECK(confidence_of(50, 100) == 127);
+}
+
+TEST_CASE("medians of winners are those of the whole level wherever a part has them")
+{
+    const tiling::Size size{23, 41};
+    Winners winners(rect_of(size));
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            winners.at(row, col) = static_cast<std::int16_t>((row * 37 + col * 101) % 61 - 30);
+        }
+    }
+    const auto whole = winner_medians(winners, size);
+    REQUIRE(whole.rect == rect_of(size));
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            std::vector<std::int16_t> around;
+            for (int r = row - 1; r <= row + 1; ++r) {
+                for (int c = col - 1; c <= col + 1; ++c) {
+                    around.push_back(winners.at(std::clamp(r, 0, size.rows - 1),
+                                                std::clamp(c, 0, size.cols - 1)));
+                }
+            }
+            std::nth_element(around.begin(), around.begin() + 4, around.end());
+            CHECK(whole.at(row, col) == around[4]);
+        }
+    }
+    for (const Rect part : {Rect{4, 7, 9, 20}, Rect{0, 0, 5, 41}, Rect{20, 30, 3, 11}}) {
+        Winners cut(part);
+        for (int row = part.row; row < part.row_end(); ++row) {
+            std::copy_n(&winners.at(row, part.col), part.cols, &cut.at(row, part.col));
+        }
+        const auto medians = winner_medians(cut, size);
+        CHECK(medians.rect.contains(part.row + 1, part.col + 1));
+        for (int row = medians.rect.row; row < medians.rect.row_end(); ++row) {
+            for (int col = medians.rect.col; col < medians.rect.col_end(); ++col) {
+                CHECK(medians.at(row, col) == whole.at(row, col));
+            }
+        }
+    }
 }
