@@ -20,6 +20,7 @@ struct RunOptions {
     tiling::TileOrder order = tiling::TileOrder::rows;
     int threads = 0;                           ///< 0: one for each processor
     std::optional<std::uint64_t> memory_bytes; ///< absent: 80 % of what the machine offers
+    std::string device = "auto";               ///< auto, cpu, cuda or cuda:N
 };
 
 /// How a disparity of a rectified pair becomes a height or a depth; all absent: it does not.

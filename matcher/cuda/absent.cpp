@@ -11,7 +11,7 @@ constexpr const char* kAbsent = "this build has no CUDA worker";
 
 Devices find_devices()
 {
-    return {{}, kAbsent};
+    return {{}, kAbsent, false};
 }
 
 std::string refusal(const Matcher&, const DeviceInfo&)

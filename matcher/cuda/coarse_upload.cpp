@@ -41,9 +41,10 @@ const host::CoarseSolutionOf<Cell>& typed(const CoarseSolution& coarse)
 // Winners and prior of every pixel, in the store's order.
 template <typename Cell>
 void upload_pixels(Uploader& uploader, const LevelStore<Cell>& store,
-                   const host::BlockResult<Cell>& block)
+                   const host::LevelResult<Cell>& level)
 {
-    const auto winners = block.winner.pixels();
+    const host::BlockResult<Cell>& block = level.blocks.front();
+    const auto winners = level.winners.pixels.pixels();
     uploader.copy(store.winner, winners.data(), winners.size());
     if (store.prior == nullptr) {
         return;
@@ -160,7 +161,7 @@ CoarseOnDevice<Cell>::CoarseOnDevice(const Matcher& matcher, const CoarseSolutio
     uploader.copy(memory_.window, &window, 1);
     const auto tones = solution.tone.pixels.pixels();
     uploader.copy(memory_.tone.data, tones.data(), tones.size());
-    upload_pixels(uploader, memory_.store, block);
+    upload_pixels(uploader, memory_.store, solution.level);
     for (int d = 0; d < memory_.store.directions.count; ++d) {
         upload_lines(uploader, memory_.store, d, block);
     }

@@ -79,23 +79,11 @@ Devices find_devices()
     return devices;
 }
 
-std::string refusal(const Matcher& matcher, const DeviceInfo& device)
+std::string refusal(const Matcher& matcher, const DeviceInfo&)
 {
-    const LevelPlan& plan = matcher.plan();
-    if (plan.windowed_levels() == 0) {
-        return "a match in one piece (mode sgm, or one level) is left to the processor";
-    }
-    for (int level = 0; level < plan.windowed_levels(); ++level) {
-        const int count = plan.ranges[static_cast<std::size_t>(level)].count();
-        const bool fits = with_cell(matcher, [&](auto cell) {
-            return !window_launches<decltype(cell)>(matcher.options(), device, count).empty();
-        });
-        if (!fits) {
-            return "windows of " + std::to_string(matcher.options().window_px) + " px with " +
-                   std::to_string(count) + " disparities are too large for " + device.name;
-        }
-    }
-    return "";
+    return matcher.plan().windowed_levels() == 0
+               ? "a match in one piece (mode sgm, or one level) is left to the processor"
+               : "";
 }
 
 std::int64_t shared_bytes(const Matcher& matcher)

@@ -39,6 +39,7 @@ struct DeviceInfo {
 struct Devices {
     std::vector<DeviceInfo> usable;
     std::string why_none; ///< one clause, where there is none; else empty
+    bool built = true;    ///< whether this build could use any
 };
 
 /// Looks for devices. Never throws: whatever goes wrong means that there is none.

@@ -21,6 +21,23 @@ int stored(int count)
     return (count + 15) / 16 * 16;
 }
 
+template <typename Cell>
+StripCase strip_case(const WindowKernel<Cell>& kernel, const Options& options,
+                     const DeviceInfo& device, int count)
+{
+    StripCase c{};
+    c.wide = kernel.is_wide();
+    c.lanes = kernel.lanes;
+    c.words = c.wide ? (count + 1) / 2 : kernel.lanes * kernel.words;
+    c.window_px = options.window_px;
+    c.halo_px = options.halo_px;
+    c.paths = options.paths;
+    c.cell_bytes = sizeof(Cell);
+    c.shared_bytes = static_cast<std::size_t>(device.shared_bytes);
+    c.warps = device.block_threads / 32;
+    return c;
+}
+
 std::size_t level_index(int level)
 {
     return static_cast<std::size_t>(level);
@@ -68,22 +85,20 @@ std::vector<WindowLaunch<Cell>> window_launches(const Options& options,
     std::vector<WindowLaunch<Cell>> launches;
     int over = 0;
     for (const auto& kernel : window_kernels(Cell{})) {
-        const StripLayout strips = strip_layout(
-            kernel.lanes * kernel.words, kernel.lanes, options.window_px, options.halo_px,
-            options.paths, sizeof(Cell), static_cast<std::size_t>(device.shared_bytes));
-        if (strips.rows == 0) {
-            return {};
+        const int up_to = kernel.most_count(count);
+        // Windows have the level's range without pruning, and any range up to it with it.
+        const bool wanted = up_to >= count || (options.prune && up_to > over);
+        const StripLayout strips = strip_layout(strip_case(kernel, options, device, count));
+        if (!wanted || strips.rows == 0) {
+            continue;
         }
-        launches.push_back({kernel, strips, over, device.multiprocessors});
-        over = kernel.most_count();
+        launches.push_back({kernel, strips, over, up_to, device.multiprocessors});
+        over = up_to;
         if (over >= count) {
-            return launches;
-        }
-        if (!options.prune) {
-            launches.clear(); // every window has the level's range
+            break;
         }
     }
-    return {};
+    return launches;
 }
 
 template <typename Cell>

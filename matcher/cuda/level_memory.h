@@ -41,18 +41,18 @@ struct TileMemory {
     unsigned char* scratch = nullptr;
 };
 
-/// One launch of a kernel: windows of more than `over_count` disparities, up to the kernel's
-/// width.
+/// One launch of a kernel: windows of more than `over_count` disparities, up to `up_to_count`.
 template <typename Cell>
 struct WindowLaunch {
     WindowKernel<Cell> kernel;
     StripLayout strips;
     int over_count = 0;
+    int up_to_count = 0;
     int blocks = 0; ///< at most
 };
 
-/// The launches that a level with ranges up to `count` takes; empty if there is no kernel for
-/// them, or none that fits the device.
+/// The launches that a level with ranges up to `count` takes: kernels that fit the device's
+/// shared memory, and at last the one for any range.
 template <typename Cell>
 std::vector<WindowLaunch<Cell>> window_launches(const Options& options,
                                                 const DeviceInfo& device, int count);

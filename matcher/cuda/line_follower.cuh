@@ -1,7 +1,7 @@
 #pragma once
 
 #include "matcher/cuda/coarse_values.cuh"
-#include "matcher/cuda/path_step.cuh"
+#include "matcher/cuda/wide_state.cuh"
 
 namespace hsgm::matcher::cuda {
 
@@ -15,13 +15,10 @@ namespace hsgm::matcher::cuda {
 ///                         2 3 0 1      row 2
 ///
 /// Directions with steps of two rows have two lots of lines, `phase` 0 and 1.
-template <typename Cell, int kGroup, int kWords>
+template <typename Cell, typename Group>
 class LineFollower {
-    using Group = LaneGroup<kGroup, kWords>;
-    static constexpr int kCells = 2 * kWords; // of a lane
-
 public:
-    /// One piece of work: kGroupsPerWarp lines from `line` on.
+    /// One piece of work: Group::kGroupsPerWarp lines from `line` on.
     struct Task {
         int direction;
         int phase;
@@ -32,7 +29,8 @@ public:
                             const Task& task)
         : frame_(frame), job_(*frame.job), strip_(strip), direction_(task.direction),
           dr_(job_.directions.row[task.direction]), dc_(job_.directions.col[task.direction]),
-          region_(path_region(job_, frame.window.core, task.direction)), phase_(task.phase)
+          region_(path_region(job_, frame.window.core, task.direction)), phase_(task.phase),
+          state_(frame.wide, frame.words())
     {
         const int lines = dr_ == 0 ? strip.rows : region_.cols;
         const int line = task.line + Group::group_in_warp();
@@ -40,36 +38,41 @@ public:
         line_ = least_of(line, lines - 1);
     }
 
-    /// `from` and `to` are where the lines of this direction wait between strips; null where
-    /// they do not. With `add_up`, costs are added to the sums.
-    __device__ void follow(const Cell* from, Cell* to, bool add_up)
+    /// `from` and `to` are where the lines of this direction wait between strips, `copy` where
+    /// else their state is kept; null where they do not. With `add_up`, costs are added to the
+    /// sums.
+    __device__ void follow(const Cell* from, Cell* to, Cell* copy, bool add_up)
     {
-        int steps = place_first();
-        bool first = true;
-        for (; steps > 0; --steps, advance(), first = false) {
-            if (first && from != nullptr && !enters()) {
-                state_.resume(from + slot());
-                if (frame_.is_padded()) {
-                    state_.pad(frame_.window.count);
-                }
-            }
-            enter(enters());
+        const int steps = place_first();
+        int last_tone = 0;
+        for (int step = 0; step < steps; ++step) {
+            const bool enters = !region_.contains(row_ - dr_, col_ - dc_);
             const int tone = job_.tone.at(row_, col_);
-            const int before = enters() ? start_tone(tone) : tone_before(first);
-            last_tone_ = tone;
-            state_.step(matching(), pair_of(static_cast<unsigned>(job_.p1)),
-                        frame_.penalties[tone < before ? before - tone : tone - before]);
-            if (active_ && frame_.window.core.contains(row_, col_)) {
-                if (add_up) {
-                    add_to_sums();
-                }
-                if (!job_.finest && add_up) {
-                    keep_line();
-                }
+            if (step == 0 && !enters) {
+                last_tone = job_.tone.at(row_ - dr_, col_ - dc_);
+                resume(from);
             }
+            if (__any_sync(kAllLanes, enters) != 0) {
+                enter(enters);
+            }
+            const int before = enters ? start_tone(tone) : last_tone;
+            last_tone = tone;
+            state_.step(matching(), pair_of(static_cast<unsigned>(job_.p1)),
+                        frame_.penalties[tone < before ? before - tone : tone - before],
+                        job_.one);
+            if (add_up && active_ && frame_.window.core.contains(row_, col_)) {
+                add_to_sums();
+                keep_line();
+            }
+            advance();
         }
-        if (to != nullptr && active_ && !first) {
-            state_.park(to + slot());
+        if (active_ && steps > 0) {
+            if (to != nullptr) {
+                state_.park(to + slot());
+            }
+            if (copy != nullptr) {
+                state_.park(copy + slot());
+            }
         }
     }
 
@@ -87,7 +90,7 @@ private:
         const int begin =
             dr_ > 0 ? strip_.row - region_.row : region_.row_end() - strip_.row_end();
         const int end = begin + strip_.rows;
-        const int first = begin + (phase_ + step - begin % step) % step;
+        const int first = begin + (step == 2 ? (phase_ + begin) & 1 : 0);
         if (first >= end) {
             return 0;
         }
@@ -112,24 +115,28 @@ private:
         }
     }
 
-    __device__ bool enters() const { return !region_.contains(row_ - dr_, col_ - dc_); }
-
-    __device__ std::size_t slot() const
+    __device__ int slot() const
     {
         const int line = phase_ * job_.strips.line_slots + line_;
-        return (std::size_t(line) * kGroup + std::size_t(Group::lane())) * kCells;
+        return Group::kWide ? line * 2 * frame_.words()
+                            : (line * Group::kLanes + Group::lane()) * 2 * Group::kWords;
+    }
+
+    __device__ void resume(const Cell* from)
+    {
+        state_.resume(from + slot());
+        if (frame_.is_padded()) {
+            state_.pad(frame_.window.count);
+        }
     }
 
     // Where paths enter the region: afresh, or with the coarser level's costs (eq. 2). All
     // lanes of the warp come here, for the exchange at the end.
-    __device__ void enter(bool entering)
+    __device__ void enter(bool enters)
     {
-        if (__any_sync(kAllLanes, entering) == 0) {
-            return;
-        }
         const bool coarse =
-            entering && job_.has_coarser && job_.image.contains(row_ - dr_, col_ - dc_);
-        if (entering) {
+            enters && job_.has_coarser && job_.image.contains(row_ - dr_, col_ - dc_);
+        if (enters) {
             state_.begin();
         }
         if (coarse) {
@@ -149,14 +156,12 @@ private:
         const Window& coarse = job_.coarser.window_at(row, col);
         const CoarseValues<Cell> values{job_.coarser.line_at(direction_, row, col),
                                         coarse.least, coarse.count, job_.unsearched};
-        const int least = frame_.window.least + Group::first_word();
-        const int half = kGroup * kWords;
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            const auto low = static_cast<unsigned>(values.at(least + i));
-            const auto high = static_cast<unsigned>(values.at(least + half + i));
-            state_.cost[i] = low | high << 16;
-        }
+        const int least = frame_.window.least;
+        const int half = frame_.words();
+        state_.each_word([&](int j, unsigned& word) {
+            word = static_cast<unsigned>(values.at(least + j)) |
+                   static_cast<unsigned>(values.at(least + half + j)) << 16;
+        });
         if (frame_.is_padded()) {
             state_.pad(frame_.window.count);
         }
@@ -169,49 +174,44 @@ private:
         if (!job_.image.contains(row, col)) {
             return tone;
         }
-        return job_.equation_3 && job_.has_coarser ? job_.coarser_tone.at(row / 2, col / 2)
-                                                   : job_.tone.at(row, col);
-    }
-    __device__ int tone_before(bool first) const
-    {
-        return first ? job_.tone.at(row_ - dr_, col_ - dc_) : last_tone_;
+        return job_.equation_3 ? job_.coarser_tone.at(row / 2, col / 2)
+                               : job_.tone.at(row, col);
     }
 
     __device__ const unsigned* matching() const
     {
         return frame_.costs + (row_ - strip_.row) * job_.strips.cost_row +
-               (col_ - frame_.first_col) * job_.strips.pixel_stride + Group::lane();
+               (col_ - frame_.first_col) * job_.strips.pixel_stride +
+               (Group::kWide ? 0 : Group::lane());
     }
 
-    __device__ void add_to_sums() const
+    __device__ void add_to_sums()
     {
         unsigned* const sums = frame_.sums + (row_ - strip_.row) * job_.strips.sum_row +
-                               (col_ - frame_.window.core.col) * job_.strips.pixel_stride +
-                               Group::lane();
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            atomicAdd(&sums[i * kGroup], state_.cost[i]);
-        }
+                               (col_ - frame_.window.core.col) * job_.strips.pixel_stride;
+        state_.each_word(
+            [sums](int j, unsigned& word) { atomicAdd(&sums[Group::place(j)], word); });
     }
 
-    __device__ void keep_line() const
+    __device__ void keep_line()
     {
-        if (!job_.store.grid.holds(row_, dr_) && !job_.store.grid.holds(col_, dc_)) {
+        if (job_.finest ||
+            (!job_.store.grid.holds(row_, dr_) && !job_.store.grid.holds(col_, dc_))) {
             return;
         }
         Cell* const kept = job_.store.line_at(direction_, row_, col_);
-        const int first = Group::first_word();
-        const int half = kGroup * kWords;
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            const unsigned pair = state_.cost[i] - state_.least;
-            if (first + i < frame_.window.count) {
-                kept[first + i] = static_cast<Cell>(pair & 0xFFFFU);
+        const int count = frame_.window.count;
+        const int half = frame_.words();
+        const unsigned least = state_.least;
+        state_.each_word([=](int j, unsigned& word) {
+            const unsigned pair = word - least;
+            if (j < count) {
+                kept[j] = static_cast<Cell>(pair & 0xFFFFU);
             }
-            if (half + first + i < frame_.window.count) {
-                kept[half + first + i] = static_cast<Cell>(pair >> 16);
+            if (half + j < count) {
+                kept[half + j] = static_cast<Cell>(pair >> 16);
             }
-        }
+        });
     }
 
     const WindowFrame<Cell>& frame_;
@@ -222,12 +222,11 @@ private:
     int dc_;
     Area region_;
     int phase_;
+    StateOf<Group> state_;
     bool active_ = false;
     int line_ = 0;
     int row_ = 0;
     int col_ = 0;
-    int last_tone_ = 0;
-    PathState<kGroup, kWords> state_;
 };
 
 } // namespace hsgm::matcher::cuda

@@ -4,14 +4,37 @@
 
 namespace hsgm::matcher::cuda {
 
+/// Word j of a pixel, with disparities beyond `count` infinitely dear.
+__device__ __forceinline__ unsigned padded_word(unsigned word, int j, int half, int count)
+{
+    if (j >= count) {
+        return kInfinitePair;
+    }
+    return j + half >= count ? (word & 0xFFFFU) | kInfinite << 16 : word;
+}
+
 /// Path costs of one pixel, shared out to a group of lanes: L_r(p, d), and their minimum in
 /// both halves of `least`.
-template <int kGroup, int kWords>
+template <typename LaneGroup>
 struct PathState {
-    using Group = LaneGroup<kGroup, kWords>;
+    using Group = LaneGroup;
+    static constexpr int kWords = Group::kWords;
+    static constexpr int kLanes = Group::kLanes;
 
     unsigned cost[kWords];
     unsigned least;
+
+    __device__ explicit PathState(unsigned*, int) {}
+
+    /// Calls f(j, word) for every word j of this lane.
+    template <typename F>
+    __device__ void each_word(F f)
+    {
+#pragma unroll
+        for (int i = 0; i < kWords; ++i) {
+            f(Group::first_word() + i, cost[i]);
+        }
+    }
 
     /// Where no path comes from: with these, eq. 1 gives L = C.
     __device__ void begin()
@@ -27,7 +50,7 @@ struct PathState {
     __device__ void pad(int count)
     {
         const int low = count - Group::first_word();
-        const int high = low - kGroup * kWords;
+        const int high = low - kLanes * kWords;
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
             const unsigned dear =
@@ -48,22 +71,23 @@ struct PathState {
     }
 
     /// Eq. 1 for the next pixel of the path, whose matching costs are at `matching`, a word
-    /// every kGroup. P1 and P2' in both halves. All lanes of the warp call it.
-    __device__ void step(const unsigned* matching, unsigned p1, unsigned p2)
+    /// every kLanes. P1 and P2' in both halves. All lanes of the warp call it. `one` is 1, but
+    /// the compiler does not know: a product and sum go through other units than the minima.
+    __device__ void step(const unsigned* matching, unsigned p1, unsigned p2, unsigned one)
     {
         // The words beside this lane's. At the ends of the range a half is missing, and the
         // other is the first or last of the other lot of halves.
         unsigned before = cost[kWords - 1];
         unsigned after = cost[0];
-        if constexpr (kGroup > 1) {
+        if constexpr (kLanes > 1) {
             const int lane = Group::lane();
-            before = __shfl_sync(kAllLanes, before, lane + kGroup - 1, kGroup);
-            after = __shfl_sync(kAllLanes, after, lane + 1, kGroup);
+            before = __shfl_sync(kAllLanes, before, lane + kLanes - 1, kLanes);
+            after = __shfl_sync(kAllLanes, after, lane + 1, kLanes);
         }
         if (Group::lane() == 0) {
             before = before << 16 | kInfinite;
         }
-        if (Group::lane() == kGroup - 1) {
+        if (Group::lane() == kLanes - 1) {
             after = after >> 16 | kInfinite << 16;
         }
         const unsigned jump = least + p2;
@@ -71,11 +95,11 @@ struct PathState {
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
             const unsigned next = i + 1 < kWords ? cost[i + 1] : after;
-            const unsigned aside = lesser(before, next) + p1;
+            const unsigned aside = lesser(before, next) * one + p1;
             const unsigned best = lesser(cost[i], jump, aside);
             before = cost[i];
             // No half borrows from the other: best >= least in both.
-            cost[i] = matching[i * kGroup] + best - least;
+            cost[i] = matching[i * kLanes] + best - least;
         }
 #pragma unroll
         for (int i = 0; i + 1 < kWords; i += 2) {

@@ -33,8 +33,8 @@ struct TileArrays {
     int asked_most = 0;
 };
 
-/// Where a block keeps what, in bytes from the start of its shared memory (or, where that is
-/// too small, of its part of the scratch memory).
+/// Where a block keeps what, in bytes from the start of its shared memory; for the widest
+/// ranges, keys, costs and sums lie in the block's part of the scratch memory instead.
 struct StripLayout {
     int rows = 0;         ///< of a strip
     int words = 0;        ///< pairs of disparities of a pixel: half the padded range
@@ -53,8 +53,9 @@ struct StripLayout {
     std::size_t checkpoints = 0; ///< in scratch, of paths that go up, for each strip
     std::size_t checkpoint_bytes = 0;
     std::size_t scratch_bytes = 0; ///< of a block
+    std::size_t wide = 0;          ///< in scratch, for ranges wider than registers
     bool parked_in_shared = true;
-    bool strips_in_shared = true;
+    std::size_t shared_ends[6] = {}; ///< of the arrays in shared memory, with their guards
 };
 
 /// All windows of a level with ranges of one class of widths.
@@ -72,6 +73,7 @@ struct SolveJob {
     Directions directions;
     int halo_px = 0;
     int p1 = 0;
+    unsigned one = 1;                  ///< see PathState::step
     const std::uint16_t* p2 = nullptr; ///< P2' by the difference of tones
     int unsearched = 0;                ///< value of a coarse disparity outside its range
 

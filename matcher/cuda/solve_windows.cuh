@@ -15,11 +15,10 @@ constexpr int kMostThreads = 384;
 /// their state at the top of every strip in device memory; then strips are solved from top to
 /// bottom, with the paths of all directions: up from the state that the strip below left, down
 /// from where the strip above ended, along by themselves.
-template <typename Cell, int kGroup, int kWords>
+template <typename Cell, typename Group>
 class WindowSolver {
-    using Follower = LineFollower<Cell, kGroup, kWords>;
-    using Costs = StripCosts<Cell, kGroup, kWords>;
-    using Group = LaneGroup<kGroup, kWords>;
+    using Follower = LineFollower<Cell, Group>;
+    using Costs = StripCosts<Cell, Group>;
 
 public:
     __device__ explicit WindowSolver(const WindowFrame<Cell>& frame)
@@ -37,9 +36,8 @@ public:
             const int down = step - climbs;
             const bool in_core = down >= above;
             const Way way = down < 0 ? Way::up : (in_core ? Way::all : Way::down);
-            const int number = down < 0 ? climbs - step : down - above;
-            const Strip strip = down < 0 || in_core ? strip_of(number) : strip_above(down);
-            solve_strip(strip, way, number);
+            const int number = down < 0 ? climbs - step : most_of(down - above, 0);
+            solve_strip(way == Way::down ? strip_above(down) : strip_of(number), way, number);
         }
     }
 
@@ -89,7 +87,7 @@ private:
         follow_lines(strip, way, number, sums);
         __syncthreads();
         if (sums) {
-            Winners<Cell, kGroup, kWords> winners(frame_, strip);
+            Winners<Cell, Group> winners(frame_, strip);
             winners.find();
             __syncthreads();
             if (job_.finest) {
@@ -114,7 +112,7 @@ private:
                 frame_.sums[i] = 0;
             }
             if (job_.finest) {
-                Winners<Cell, kGroup, kWords>(frame_, strip).reset_keys();
+                Winners<Cell, Group>(frame_, strip).reset_keys();
             }
         }
         __syncthreads();
@@ -172,18 +170,17 @@ private:
                                          std::size_t(job_.strips.line_slots) *
                                          std::size_t(2 * frame_.words());
         const std::size_t at = std::size_t(rank(work.direction)) * of_direction;
-        const Cell* from = nullptr;
-        Cell* to = nullptr;
-        if (dr > 0) {
-            to = frame_.parked + at;
-            from = to;
-        } else if (dr < 0) {
-            const std::size_t of_strip = std::size_t(ranks()) * of_direction;
-            Cell* const here = frame_.checkpoints + std::size_t(number) * of_strip + at;
-            from = here + of_strip;
-            to = add_up ? nullptr : here;
-        }
-        Follower(frame_, strip, work).follow(from, to, add_up);
+        // Paths that go up are kept at every strip while they climb, and start from there when
+        // sums are wanted; until then the room of those that go down is theirs, too.
+        Cell* const checkpoint =
+            frame_.checkpoints + std::size_t(number * ranks()) * of_direction + at;
+        const bool resumes = dr < 0 && add_up;
+        const Cell* const from =
+            resumes ? checkpoint + std::size_t(ranks()) * of_direction : frame_.parked + at;
+        Cell* const to = dr == 0 || resumes ? nullptr : frame_.parked + at;
+        const bool keeps = dr < 0 && !add_up && number <= core_strips_;
+        Cell* const copy = keeps ? checkpoint : nullptr;
+        Follower(frame_, strip, work).follow(from, to, copy, add_up);
     }
 
     // Number of a direction among those that go its way, up or down.
@@ -215,40 +212,43 @@ private:
     int core_strips_;
 };
 
-/// Points a frame at the block's memory.
-template <typename Cell>
+/// Points a frame at the block's memory: what is needed most is shared, if it fits.
+template <typename Cell, typename Group>
 __device__ WindowFrame<Cell> frame_of(const SolveJob<Cell>& job)
 {
     unsigned char* const shared = dynamic_shared();
     unsigned char* const scratch =
         job.scratch + std::size_t(blockIdx.x) * job.strips.scratch_bytes;
+    unsigned char* const strips = Group::kWide ? scratch : shared;
     const StripLayout& at = job.strips;
     WindowFrame<Cell> frame{};
     frame.job = &job;
     frame.task = reinterpret_cast<int*>(shared + at.control);
     frame.penalties = reinterpret_cast<unsigned*>(shared + at.penalties);
-    frame.keys = reinterpret_cast<unsigned*>(shared + at.keys);
-    frame.costs = reinterpret_cast<unsigned*>(shared + at.costs);
-    frame.sums = reinterpret_cast<unsigned*>(shared + at.sums);
+    frame.keys = reinterpret_cast<unsigned*>(strips + at.keys);
+    frame.costs = reinterpret_cast<unsigned*>(strips + at.costs);
+    frame.sums = reinterpret_cast<unsigned*>(strips + at.sums);
     frame.parked =
         reinterpret_cast<Cell*>((at.parked_in_shared ? shared : scratch) + at.parked);
     frame.checkpoints = reinterpret_cast<Cell*>(scratch + at.checkpoints);
+    if constexpr (Group::kWide) {
+        frame.wide = reinterpret_cast<unsigned*>(scratch + at.wide) +
+                     threadIdx.x / kWarp * 2 * static_cast<unsigned>(at.words);
+    }
     if constexpr (kGuardBytes > 0) {
-        for (const std::size_t begin : {at.penalties, at.keys, at.costs, at.sums}) {
-            forbid_shared(shared + begin - kGuardBytes, kGuardBytes);
+        for (const std::size_t end : at.shared_ends) {
+            forbid_shared(shared + end - kGuardBytes, kGuardBytes);
         }
-        forbid_shared(shared + (at.parked_in_shared ? at.parked : at.bytes) - kGuardBytes,
-                      kGuardBytes);
     }
     return frame;
 }
 
 /// Solves the windows of a job: each block takes one after the other.
-template <typename Cell, int kGroup, int kWords>
+template <typename Cell, typename Group>
 __global__ void __launch_bounds__(kMostThreads)
     solve_windows(const __grid_constant__ SolveJob<Cell> job)
 {
-    WindowFrame<Cell> frame = frame_of(job);
+    WindowFrame<Cell> frame = frame_of<Cell, Group>(job);
     for (int a = static_cast<int>(threadIdx.x); a < 256; a += static_cast<int>(blockDim.x)) {
         frame.penalties[a] = pair_of(job.p2[a]);
     }
@@ -270,7 +270,7 @@ __global__ void __launch_bounds__(kMostThreads)
         frame.window = window;
         frame.first_col = most_of(window.core.col - job.halo_px, 0);
         frame.end_col = least_of(window.core.col_end() + job.halo_px, job.image.cols);
-        WindowSolver<Cell, kGroup, kWords>(frame).solve();
+        WindowSolver<Cell, Group>(frame).solve();
     }
 }
 

@@ -10,9 +10,9 @@ std::span<const WindowKernel<std::uint16_t>> window_kernels(std::uint16_t)
 {
     using Cell = std::uint16_t;
     static constexpr std::array<WindowKernel<Cell>, 3> kKernels{{
-        {solve_windows<Cell, 4, 8>, 4, 8},
-        {solve_windows<Cell, 8, 8>, 8, 8},
-        {solve_windows<Cell, 32, 8>, 32, 8},
+        {solve_windows<Cell, LaneGroup<8, 8>>, 8, 8},
+        {solve_windows<Cell, LaneGroup<32, 8>>, 32, 8},
+        {solve_windows<Cell, WideGroup>, kWarp, 0},
     }};
     return kKernels;
 }

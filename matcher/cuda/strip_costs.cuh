@@ -1,7 +1,7 @@
 #pragma once
 
 #include "matcher/cuda/coarse_values.cuh"
-#include "matcher/cuda/window_frame.cuh"
+#include "matcher/cuda/path_step.cuh"
 
 namespace hsgm::matcher::cuda {
 
@@ -10,10 +10,13 @@ struct CensusCost {
     unsigned scale;
     unsigned most;
 
-    __device__ unsigned operator()(Feature left, Feature right) const
+    /// Of a left pixel and two right ones, in both halves.
+    __device__ unsigned operator()(Feature left, Feature low, Feature high) const
     {
-        const int bits = __popc(left.x ^ right.x) + __popc(left.y ^ right.y);
-        return least_of(static_cast<unsigned>(bits) * scale, most);
+        const int low_bits = __popc(left.x ^ low.x) + __popc(left.y ^ low.y);
+        const int high_bits = __popc(left.x ^ high.x) + __popc(left.y ^ high.y);
+        return lesser(static_cast<unsigned>(high_bits * 0x10000 + low_bits) * scale,
+                      pair_of(most));
     }
 };
 
@@ -21,15 +24,18 @@ struct CensusCost {
 struct TableCost {
     const std::uint8_t* table;
 
-    __device__ unsigned operator()(Feature left, Feature right) const
+    __device__ unsigned operator()(Feature left, Feature low, Feature high) const
     {
-        return __ldg(table + left.x * 256 + right.x);
+        const std::uint8_t* const row = table + left.x * 256;
+        return __ldg(row + low.x) | static_cast<unsigned>(__ldg(row + high.x)) << 16;
     }
 };
 
 /// Fills a strip of matching costs.
-template <typename Cell, int kGroup, int kWords>
+template <typename Cell, typename Group>
 class StripCosts {
+    static constexpr int kWords = Group::kWords;
+
 public:
     __device__ StripCosts(const WindowFrame<Cell>& frame, const Strip& strip)
         : frame_(frame), job_(*frame.job), strip_(strip)
@@ -37,15 +43,19 @@ public:
     }
 
     /// C(p, d) of all pixels, without the prior. A thread takes a few pixels of a row and the
-    /// words of one lane: from word to word, its right pixels move on by one.
+    /// words of one lane: from word to word, its right pixels move on by one. Holds a barrier.
     __device__ void fill()
     {
         const CostRule& rule = job_.cost;
-        if (rule.kind == CostKind::census) {
-            fill_with(CensusCost{static_cast<unsigned>(rule.scale),
-                                 static_cast<unsigned>(rule.most)});
+        const CensusCost census{static_cast<unsigned>(rule.scale),
+                                static_cast<unsigned>(rule.most)};
+        const bool valid = __syncthreads_and(sees_valid_pixels() ? 1 : 0) != 0;
+        if (rule.kind == CostKind::table) {
+            fill_with<false>(TableCost{rule.table});
+        } else if (valid) {
+            fill_with<true>(census);
         } else {
-            fill_with(TableCost{rule.table});
+            fill_with<false>(census);
         }
     }
 
@@ -68,17 +78,35 @@ private:
     // An odd number of pixels: their costs then lie in different banks.
     static constexpr int kPixels = 5;
 
-    template <typename Rule>
+    // This thread's share of looking whether all pixels that the strip compares are valid.
+    __device__ bool sees_valid_pixels() const
+    {
+        const int lefts = frame_.end_col - frame_.first_col;
+        const int cols = 2 * lefts + frame_.window.count - 1;
+        const int last = frame_.window.least + frame_.window.count - 1;
+        unsigned valid = kValidFeature;
+        for (int p = static_cast<int>(threadIdx.x); p < strip_.rows * cols;
+             p += static_cast<int>(blockDim.x)) {
+            const int row = strip_.row + p / cols;
+            const int i = p % cols;
+            valid &= i < lefts ? job_.left.at(row, frame_.first_col + i).y
+                               : right_at(row, frame_.first_col - last + i - lefts).y;
+        }
+        return valid != 0;
+    }
+
+    template <bool kAllValid, typename Rule>
     __device__ void fill_with(const Rule& rule)
     {
         const int cols = frame_.end_col - frame_.first_col;
         const int across = (cols + kPixels - 1) / kPixels;
-        const int pieces = strip_.rows * across * kGroup;
+        const int lanes = Group::kWide ? frame_.words() : Group::kLanes;
+        const int pieces = strip_.rows * across * lanes;
         for (int p = static_cast<int>(threadIdx.x); p < pieces;
              p += static_cast<int>(blockDim.x)) {
-            const int block = p / kGroup;
-            fill_piece(rule, strip_.row + block / across,
-                       frame_.first_col + block % across * kPixels, p % kGroup);
+            const int block = p / lanes;
+            fill_piece<kAllValid>(rule, strip_.row + block / across,
+                                  frame_.first_col + block % across * kPixels, p % lanes);
         }
     }
 
@@ -89,14 +117,22 @@ private:
                                                        : Feature{0, 0};
     }
 
-    template <typename Rule>
-    __device__ unsigned cost(const Rule& rule, Feature left, Feature right) const
+    // What lies outside the image, or is nodata, costs half of the most there is.
+    template <bool kAllValid, typename Rule>
+    __device__ unsigned cost(const Rule& rule, Feature left, Feature low, Feature high) const
     {
-        const bool valid = (left.y & right.y & kValidFeature) != 0;
-        return valid ? rule(left, right) : static_cast<unsigned>(job_.cost.most) / 2;
+        const unsigned pair = rule(left, low, high);
+        if constexpr (kAllValid) {
+            return pair;
+        }
+        const auto half = static_cast<unsigned>(job_.cost.most) / 2;
+        const bool low_valid = (left.y & low.y & kValidFeature) != 0;
+        const bool high_valid = (left.y & high.y & kValidFeature) != 0;
+        return (low_valid ? pair & 0xFFFFU : half) |
+               (high_valid ? pair & 0xFFFF0000U : half << 16);
     }
 
-    template <typename Rule>
+    template <bool kAllValid, typename Rule>
     __device__ void fill_piece(const Rule& rule, int row, int col, int lane)
     {
         const int pixels = least_of(kPixels, frame_.end_col - col);
@@ -118,16 +154,15 @@ private:
         for (int i = 0; i < kWords; ++i) {
 #pragma unroll
             for (int k = 0; k < kPixels; ++k) {
-                unsigned pair = cost(rule, left[k], low[k]) | cost(rule, left[k], high[k])
-                                                                  << 16;
+                unsigned pair = cost<kAllValid>(rule, left[k], low[k], high[k]);
                 if (frame_.is_padded()) {
-                    pair = padded(pair, first + i);
+                    pair = padded_word(pair, first + i, half, frame_.window.count);
                 }
                 if (k < pixels) {
                     to[k * job_.strips.pixel_stride] = pair;
                 }
             }
-            to += kGroup;
+            to += Group::kLanes;
 #pragma unroll
             for (int k = kPixels - 1; k > 0; --k) {
                 low[k] = low[k - 1];
@@ -136,15 +171,6 @@ private:
             low[0] = right_at(row, meets - i - 1);
             high[0] = right_at(row, meets - half - i - 1);
         }
-    }
-
-    __device__ unsigned padded(unsigned pair, int word) const
-    {
-        const int count = frame_.window.count;
-        if (word >= count) {
-            return kInfinitePair;
-        }
-        return word + frame_.words() >= count ? (pair & 0xFFFFU) | kInfinite << 16 : pair;
     }
 
     __device__ void add_prior_at(int row, int col)
@@ -159,8 +185,8 @@ private:
             const int d = frame_.window.least + j;
             const int low = j < frame_.window.count ? prior.at(d) >> 2 : 0;
             const int high = j + half < frame_.window.count ? prior.at(d + half) >> 2 : 0;
-            costs[j % kWords * kGroup + j / kWords] +=
-                static_cast<unsigned>(low) | static_cast<unsigned>(high) << 16;
+            costs[Group::place(j)] += static_cast<unsigned>(low) | static_cast<unsigned>(high)
+                                                                       << 16;
         }
     }
 

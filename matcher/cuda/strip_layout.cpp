@@ -9,10 +9,11 @@ namespace {
 
 // Strips of more rows save little.
 constexpr int kMostRows = 16;
+constexpr int kWideRows = 4;
 
-std::size_t aligned(std::size_t bytes)
+std::size_t aligned(std::size_t bytes, std::size_t to = 16)
 {
-    return (bytes + kGuardBytes + 15) / 16 * 16;
+    return (bytes + kGuardBytes + to - 1) / to * to;
 }
 
 // The least stride >= `words` that is `skew` more than a multiple of the 32 banks.
@@ -21,17 +22,20 @@ int skewed(int words, int skew)
     return (words - skew + 31) / 32 * 32 + skew;
 }
 
-struct Case {
-    int words;
-    int lanes;
-    int window_px;
-    int halo_px;
-    int paths;
-    std::size_t cell_bytes;
+// Arrays one after the other.
+struct Stack {
+    std::size_t used = 0;
+
+    std::size_t add(std::size_t bytes)
+    {
+        const std::size_t begin = used;
+        used += aligned(bytes);
+        return begin;
+    }
 };
 
 // Where everything lies with strips of `rows` rows.
-StripLayout lay_out(const Case& c, int rows, bool parked_in_shared)
+StripLayout lay_out(const StripCase& c, int rows, bool parked_in_shared)
 {
     StripLayout at;
     at.rows = rows;
@@ -43,43 +47,49 @@ StripLayout lay_out(const Case& c, int rows, bool parked_in_shared)
     at.sum_row = skewed(c.window_px * at.pixel_stride, c.lanes % 32);
     at.key_row = c.window_px + 2 * c.words;
     at.line_slots = c.window_px + c.halo_px;
+    const auto row_count = static_cast<std::size_t>(rows);
     const std::size_t vector = std::size_t(2 * c.words) * c.cell_bytes;
     const int phases = c.paths == 16 ? 2 : 1;
     const int downward = c.paths == 4 ? 1 : (c.paths == 16 ? 7 : 3);
     const int upward = c.paths == 5 ? 0 : downward;
     const std::size_t lines = std::size_t(phases) * std::size_t(at.line_slots) * vector;
-    const std::size_t parked = aligned(std::size_t(downward) * lines);
-
-    at.control = 0;
-    at.penalties = aligned(sizeof(int));
-    at.keys = at.penalties + aligned(256 * sizeof(unsigned));
-    at.costs = at.keys + aligned(std::size_t(rows) * std::size_t(at.key_row) * 4);
-    at.sums = at.costs + aligned(std::size_t(rows) * std::size_t(at.cost_row) * 4);
-    at.parked = at.sums + aligned(std::size_t(rows) * std::size_t(at.sum_row) * 4);
-    at.bytes = at.parked + (parked_in_shared ? parked : 0);
-    at.parked_in_shared = parked_in_shared;
-
     const auto strips = static_cast<std::size_t>((c.window_px + rows - 1) / rows +
                                                  (c.halo_px + rows - 1) / rows + 1);
+
+    Stack shared;
+    Stack scratch;
+    Stack& near = c.wide ? scratch : shared;
+    at.control = shared.add(sizeof(int));
+    at.shared_ends[0] = shared.used;
+    at.penalties = shared.add(256 * sizeof(unsigned));
+    at.shared_ends[1] = shared.used;
+    at.keys = near.add(row_count * std::size_t(at.key_row) * sizeof(unsigned));
+    at.shared_ends[2] = shared.used;
+    at.costs = near.add(row_count * std::size_t(at.cost_row) * sizeof(unsigned));
+    at.shared_ends[3] = shared.used;
+    at.sums = near.add(row_count * std::size_t(at.sum_row) * sizeof(unsigned));
+    at.shared_ends[4] = shared.used;
+    at.parked_in_shared = parked_in_shared;
+    at.parked = (parked_in_shared ? shared : scratch).add(std::size_t(downward) * lines);
+    at.shared_ends[5] = shared.used;
     at.checkpoint_bytes = strips * std::size_t(upward) * lines;
-    at.checkpoints = 0;
-    at.scratch_bytes = aligned(at.checkpoint_bytes);
-    if (!parked_in_shared) {
-        at.parked = at.scratch_bytes;
-        at.scratch_bytes += parked;
+    at.checkpoints = scratch.add(at.checkpoint_bytes);
+    if (c.wide) {
+        at.wide = scratch.add(std::size_t(c.warps) * 2 * std::size_t(c.words) * 4);
     }
-    at.scratch_bytes = (at.scratch_bytes + 255) / 256 * 256;
+    at.bytes = shared.used;
+    at.scratch_bytes = aligned(scratch.used, 256);
     return at;
 }
 
 // The highest strips that fit. Directions with steps of two rows need them even.
-StripLayout highest(const Case& c, std::size_t shared_bytes, bool parked_in_shared)
+StripLayout highest(const StripCase& c, bool parked_in_shared)
 {
     const int step = c.paths == 16 ? 2 : 1;
     const int most = std::min(kMostRows, c.window_px);
     for (int rows = most / step * step; rows > 0; rows -= step) {
         const StripLayout layout = lay_out(c, rows, parked_in_shared);
-        if (layout.bytes <= shared_bytes) {
+        if (layout.bytes <= c.shared_bytes) {
             return layout;
         }
     }
@@ -88,14 +98,16 @@ StripLayout highest(const Case& c, std::size_t shared_bytes, bool parked_in_shar
 
 } // namespace
 
-StripLayout strip_layout(int words, int lanes, int window_px, int halo_px, int paths,
-                         std::size_t cell_bytes, std::size_t shared_bytes)
+StripLayout strip_layout(const StripCase& c)
 {
-    const Case c{words, lanes, window_px, halo_px, paths, cell_bytes};
-    const StripLayout near = highest(c, shared_bytes, true);
-    const StripLayout far = highest(c, shared_bytes, false);
-    // Parking in device memory pays where it makes strips half as high again.
-    return 2 * far.rows >= 3 * near.rows ? far : near;
+    if (c.wide) {
+        return lay_out(c, kWideRows, false);
+    }
+    const StripLayout near = highest(c, true);
+    const StripLayout far = highest(c, false);
+    // What is parked is written over strip by strip and hardly leaves the second level cache:
+    // to put it there pays where it makes strips a quarter higher.
+    return 4 * far.rows >= 5 * near.rows ? far : near;
 }
 
 } // namespace hsgm::matcher::cuda

@@ -176,7 +176,7 @@ void TileMatcher<Cell>::solve_level(const TileMemory<Cell>& memory, int level)
         const WindowLaunch<Cell>& l = launches[i];
         job.next_window = m.counters + i;
         job.over_count = l.over_count;
-        job.up_to_count = l.kernel.most_count();
+        job.up_to_count = l.up_to_count;
         job.strips = l.strips;
         check(launch(l.kernel.kernel, std::min(l.blocks, m.window_count), device_.block_threads,
                      l.strips.bytes, stream, job),

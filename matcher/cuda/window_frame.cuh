@@ -28,6 +28,7 @@ struct WindowFrame {
     unsigned* sums;
     Cell* parked;
     Cell* checkpoints;
+    unsigned* wide; ///< of the warp, for WideGroup
 
     __device__ int words() const { return job->strips.words; }
     __device__ bool is_padded() const { return window.count < 2 * words(); }
@@ -55,27 +56,57 @@ __device__ Area path_region(const SolveJob<Cell>& job, const Area& core, int d)
 ///     lane            0                   1          ...
 ///     low halves      0 1 2 3 4 5 6 7     8 9 ...           half - 1
 ///     high halves     half ...                          2 * half - 1
-template <int kGroup, int kWords>
+///
+/// In memory, word i of lane g lies at i * kLanes + g: lanes side by side.
+template <int kLaneCount, int kWordCount>
 struct LaneGroup {
-    static constexpr int kGroupsPerWarp = kWarp / kGroup;
+    static constexpr int kLanes = kLaneCount;
+    static constexpr int kWords = kWordCount;
+    static constexpr bool kWide = false;
+    static constexpr int kGroupsPerWarp = kWarp / kLanes;
 
-    __device__ static int lane() { return static_cast<int>(threadIdx.x) % kGroup; }
+    __device__ static int lane() { return static_cast<int>(threadIdx.x) % kLanes; }
     __device__ static int group_in_warp()
     {
-        return static_cast<int>(threadIdx.x) % kWarp / kGroup;
+        return static_cast<int>(threadIdx.x) % kWarp / kLanes;
     }
     __device__ static int first_word() { return lane() * kWords; }
+    /// Where word `j` of a pixel lies.
+    __device__ static int place(int j) { return j % kWords * kLanes + j / kWords; }
 
     /// The least half of all words of all lanes of the group, in both halves.
     __device__ static unsigned least_half(unsigned word)
     {
         word = lesser(word, swapped(word));
 #pragma unroll
-        for (int by = 1; by < kGroup; by *= 2) {
+        for (int by = 1; by < kLanes; by *= 2) {
             word = lesser(word, __shfl_xor_sync(kAllLanes, word, by));
         }
         return word;
     }
+    /// The least value of all lanes of the group.
+    __device__ static unsigned least_value(unsigned value)
+    {
+#pragma unroll
+        for (int by = 1; by < kLanes; by *= 2) {
+            value = least_of(value, __shfl_xor_sync(kAllLanes, value, by));
+        }
+        return value;
+    }
 };
+
+/// A warp that shares any number of words, one a lane at a time: word j belongs to lane j % 32
+/// and lies at j.
+struct WideGroup : LaneGroup<kWarp, 1> {
+    static constexpr bool kWide = true;
+};
+
+/// Words of a pixel that a lane sees one after the other in rounds; one round but for
+/// WideGroup.
+template <typename Group>
+__device__ int rounds(int words)
+{
+    return Group::kWide ? (words + kWarp - 1) / kWarp : 1;
+}
 
 } // namespace hsgm::matcher::cuda

@@ -7,9 +7,9 @@
 namespace hsgm::matcher::cuda {
 
 /// What becomes of the sums of a strip (docs/algorithm.md, section 5).
-template <typename Cell, int kGroup, int kWords>
+template <typename Cell, typename Group>
 class Winners {
-    using Group = LaneGroup<kGroup, kWords>;
+    static constexpr int kWords = Group::kWords;
     static constexpr unsigned kNone = 0xFFFFU; ///< no sum is as dear: 16 paths of 4063
 
 public:
@@ -69,22 +69,32 @@ private:
                (col - frame_.window.core.col) * job_.strips.pixel_stride;
     }
 
-    // Word i of this lane, with what pads the range dearer than all.
-    __device__ unsigned sums_word(const unsigned* sums, int i) const
+    // Calls f(j, pair) for the words of this lane; what pads the range is dearer than all.
+    template <typename F>
+    __device__ void each_word(const unsigned* sums, F f) const
     {
-        unsigned pair = sums[i * kGroup + Group::lane()];
-        if (frame_.is_padded()) {
-            const int j = Group::first_word() + i;
-            pair |= (j < frame_.window.count ? 0U : kNone) |
-                    (j + frame_.words() < frame_.window.count ? 0U : kNone << 16);
+        const int words = frame_.words();
+        const int count = frame_.window.count;
+        for (int round = 0; round < rounds<Group>(words); ++round) {
+#pragma unroll
+            for (int i = 0; i < kWords; ++i) {
+                const int j = round * kWarp + Group::first_word() + i;
+                if (Group::kWide && j >= words) {
+                    return;
+                }
+                unsigned pair = sums[Group::kWide ? j : i * Group::kLanes + Group::lane()];
+                if (frame_.is_padded()) {
+                    pair |= (j < count ? 0U : kNone) | (j + words < count ? 0U : kNone << 16);
+                }
+                f(j, pair);
+            }
         }
-        return pair;
     }
 
     __device__ static int sum_at(const unsigned* sums, int index, int half)
     {
         const int j = index < half ? index : index - half;
-        const unsigned pair = sums[j % kWords * kGroup + j / kWords];
+        const unsigned pair = sums[Group::place(j)];
         return static_cast<int>(index < half ? pair & 0xFFFFU : pair >> 16);
     }
 
@@ -95,27 +105,20 @@ private:
         const bool gives_keys = wanted && job_.finest && job_.tile.core.contains(row, col) &&
                                 is_valid(job_.left_pixels.at(row, col));
         const int half = frame_.words();
-        const int first = Group::first_word();
         unsigned* const keys = frame_.keys + (row - strip_.row) * job_.strips.key_row +
-                               (col - frame_.window.least - first - first_key_col_);
+                               (col - frame_.window.least - first_key_col_);
         const auto offset = static_cast<unsigned>(frame_.window.least - job_.tile.asked_least);
         unsigned least = ~0U;
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            const unsigned pair = sums_word(sums, i);
-            const auto j = static_cast<unsigned>(first + i);
-            const unsigned low = pair << 16 | j;
-            const unsigned high = (pair & 0xFFFF0000U) | (j + static_cast<unsigned>(half));
+        each_word(sums, [&](int j, unsigned pair) {
+            const unsigned low = pair << 16 | static_cast<unsigned>(j);
+            const unsigned high = (pair & 0xFFFF0000U) | static_cast<unsigned>(j + half);
             least = least_of(least, least_of(low, high));
             if (gives_keys) {
-                atomicMin(keys - i, low + offset);
-                atomicMin(keys - i - half, high + offset);
+                atomicMin(keys - j, low + offset);
+                atomicMin(keys - j - half, high + offset);
             }
-        }
-#pragma unroll
-        for (int by = 1; by < kGroup; by *= 2) {
-            least = least_of(least, __shfl_xor_sync(kAllLanes, least, by));
-        }
+        });
+        least = Group::least_value(least);
         const int index = static_cast<int>(least & 0xFFFFU);
         const int sum = static_cast<int>(least >> 16);
         if (job_.finest) {
@@ -131,25 +134,18 @@ private:
     // The least sum at least two disparities from the winner; kNone if there is none.
     __device__ int rival_of(const unsigned* sums, int index) const
     {
-        const int low = index - Group::first_word();
-        const int high = low - frame_.words();
+        const int half = frame_.words();
         unsigned least = ~0U;
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            const unsigned near =
-                (near_to(low, i) ? kNone : 0U) | (near_to(high, i) ? kNone << 16 : 0U);
-            least = __vminu2(least, sums_word(sums, i) | near);
-        }
-        unsigned rival = least_of(least & 0xFFFFU, least >> 16);
-#pragma unroll
-        for (int by = 1; by < kGroup; by *= 2) {
-            rival = least_of(rival, __shfl_xor_sync(kAllLanes, rival, by));
-        }
-        return static_cast<int>(rival);
+        each_word(sums, [&](int j, unsigned pair) {
+            const unsigned near = (near_to(index, j) ? kNone : 0U) |
+                                  (near_to(index, j + half) ? kNone << 16 : 0U);
+            least = __vminu2(least, pair | near);
+        });
+        return static_cast<int>(Group::least_value(least_of(least & 0xFFFFU, least >> 16)));
     }
-    __device__ static bool near_to(int index, int i)
+    __device__ static bool near_to(int index, int other)
     {
-        return index >= i - 1 && index <= i + 1;
+        return index >= other - 1 && index <= other + 1;
     }
 
     __device__ void write_pixel(const unsigned* sums, int row, int col, int index, int sum,
@@ -205,18 +201,16 @@ private:
             return;
         }
         std::uint8_t* const prior = store.prior + pixel * std::size_t(store.stride);
-        const int first = Group::first_word();
         const int half = frame_.words();
-#pragma unroll
-        for (int i = 0; i < kWords; ++i) {
-            const unsigned pair = sums[i * kGroup + Group::lane()];
-            if (first + i < frame_.window.count) {
-                prior[first + i] = prior_value(static_cast<int>(pair & 0xFFFFU), sum);
+        const int count = frame_.window.count;
+        each_word(sums, [&](int j, unsigned pair) {
+            if (j < count) {
+                prior[j] = prior_value(static_cast<int>(pair & 0xFFFFU), sum);
             }
-            if (first + half + i < frame_.window.count) {
-                prior[first + half + i] = prior_value(static_cast<int>(pair >> 16), sum);
+            if (half + j < count) {
+                prior[half + j] = prior_value(static_cast<int>(pair >> 16), sum);
             }
-        }
+        });
     }
 
     // The number of paths as a constant lets the compiler divide by multiplying.

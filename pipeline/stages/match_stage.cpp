@@ -5,12 +5,14 @@
 #include "io/quicklook.h"
 #include "io/raster_source.h"
 #include "io/scratch_folder.h"
+#include "pipeline/cuda_worker.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/output_check.h"
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/tile_graph.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -97,10 +99,13 @@ void match_tiles(const PlannedJob& planned, const Matcher& matcher,
 {
     const auto coarse = solve_coarse(matcher, prepared);
     const tiling::TilePlan plan(planned.shape.left, planned.budget.tile_size_px);
-    std::vector<std::unique_ptr<MatchWorker>> workers;
-    for (int i = 0; i < planned.budget.workers; ++i) {
-        workers.push_back(std::make_unique<CpuWorker>(i, matcher, *coarse));
-    }
+    const auto trouble = [](int tile, const std::string& why) {
+        spdlog::warn("{}; {}", why,
+                     tile < 0 ? "it takes no part in this run"
+                              : fmt::format("tile {} was matched on the processor", tile));
+    };
+    const auto workers =
+        make_workers(planned.devices, planned.budget, matcher, *coarse, trouble);
     int done = 0;
     TileSteps steps;
     steps.read = [&](int tile) { return read_tile(tile, plan, matcher, prepared); };
@@ -157,6 +162,7 @@ PlannedJob plan_job(const Job& job)
         planned.levels = matcher.plan();
         planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
         planned.budget = make_budget(matcher, job, planned.pyramid_levels);
+        planned.devices = plan_devices(device_choice(job.run.device), matcher, planned.budget);
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }
