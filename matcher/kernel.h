@@ -74,6 +74,27 @@ HSGM_HOST_DEVICE constexpr int confidence_of(int least, int rival)
     return c < 1 ? 1 : c;
 }
 
+/// Differing bits of the sparse census that count as neither match nor mismatch: there is no
+/// counterpart to compare with.
+constexpr int kNoCounterpartBits = 8;
+/// The fraction that the sums give has the weight of this many differing bits.
+constexpr int kFractionVotes = 6;
+
+/// Sub-pixel position of winner `d` in 1/256 px from differing bits of the sparse census at
+/// d-1, d, d+1, summed over the same pixels, and `before`, the offset in 1/256 px that the sums
+/// of path costs gave. Straight lines of equal slope through the three, as far as the nearer
+/// neighbour is no better than d itself (docs/algorithm.md, section 6).
+HSGM_HOST_DEVICE constexpr std::int32_t census_subpixel_q8(int d, int below, int at, int above,
+                                                           int before)
+{
+    const int rise_below = below > at ? below - at : 0;
+    const int rise_above = above > at ? above - at : 0;
+    const int a = 128 * rise_below + kFractionVotes * (before < 0 ? 128 + before : 128);
+    const int b = 128 * rise_above + kFractionVotes * (before > 0 ? 128 - before : 128);
+    const int offset = a < b ? 128 - 128 * a / b : 128 - 128 * b / a;
+    return a < b ? d * 256 - (offset < 127 ? offset : 127) : d * 256 + offset;
+}
+
 /// Rounds a count of disparities up to what the vector code stores for a pixel: full vectors
 /// of 32 bytes, but for the shortest ranges.
 constexpr int padded_count(int count)

@@ -43,6 +43,11 @@ const Options& validated(const Options& options)
 
 } // namespace
 
+MatchStatistics work_of(const CoarseSolution& coarse)
+{
+    return coarse.work;
+}
+
 Matcher::Matcher(PairTraits pair, const Options& options)
     : pair_(std::move(pair)), options_(validated(options).resolved()),
       plan_(plan_levels(pair_.shape, options_)), workers_(std::make_shared<Workers>())

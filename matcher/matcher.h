@@ -4,6 +4,7 @@
 #include "matcher/level_plan.h"
 #include "matcher/options.h"
 #include "matcher/pixel.h"
+#include "matcher/statistics.h"
 #include "tiling/image.h"
 
 #include <cstdint>
@@ -35,6 +36,7 @@ struct TileMatch {
     tiling::Image<std::uint16_t> reasons;     ///< nodata, outside, texture, range end
     tiling::Patch<std::uint32_t> right_keys;  ///< S << 16 | (d - asked.min); global columns
                                               ///< of the right image; ~0 where none
+    MatchStatistics work;                     ///< that this tile took
 };
 
 /// The winning whole disparity of a value in 1/256 px: offsets lie in [-127, 128].
@@ -44,6 +46,9 @@ constexpr int winner_of(std::int32_t disparity_q8)
 }
 
 class CoarseSolution;
+
+/// What solving the coarsest level took.
+MatchStatistics work_of(const CoarseSolution& coarse);
 
 /// Matches a rectified pair tile by tile; the same bits for every tiling.
 ///

@@ -1,5 +1,6 @@
 #include "matcher/matcher.h"
 
+#include "matcher/host/level_features.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
@@ -11,10 +12,9 @@ namespace {
 using tiling::LevelSupport;
 using tiling::Rect;
 
-constexpr std::int64_t kImageBytes = 2 + 1 + 1 + 8; // pixels, tone, texture gate, census
-constexpr std::int64_t kRightBytes = 2 + 1 + 8;     // pixels, tone, census
+constexpr std::int64_t kImageBytes = 2 + 1 + 1 + 1; // pixels, tone, texture gate, validity
+constexpr std::int64_t kRightBytes = 2 + 1;         // pixels, validity
 constexpr std::int64_t kFirstPassBytes = 4 + 1 + 2; // disparity, confidence, reasons
-constexpr std::int64_t kPaddedCopyBytes = 2;        // the census works on a padded copy
 constexpr std::int64_t kKeyBytes = 4;
 
 std::int64_t path_bytes(const Options& options)
@@ -34,11 +34,11 @@ std::int64_t kept_bytes(const Rect& windows, int count, const Options& options)
     return (2 + 2) * windows.area() + prior + lines;
 }
 
-std::int64_t feature_bytes(const LevelSupport& s)
+std::int64_t feature_bytes(const LevelSupport& s, Cost cost)
 {
-    const std::int64_t left = s.left_image.area();
-    const std::int64_t right = s.right_image.area();
-    return left * kImageBytes + right * kRightBytes + std::max(left, right) * kPaddedCopyBytes;
+    const std::int64_t of_cost = host::feature_bytes(cost);
+    return s.left_image.area() * (kImageBytes + of_cost) +
+           s.right_image.area() * (kRightBytes + of_cost);
 }
 
 std::int64_t worker_bytes(const Options& options, int count)
@@ -70,7 +70,7 @@ std::int64_t Matcher::coarse_bytes() const
         plan_.levels() == 1
             ? size.area() * kFirstPassBytes + plan_.right_sizes.back().area() * kKeyBytes
             : kept_bytes(rect_of(size), count, options_);
-    return cells * (1 + 2) + path_rows + feature_bytes(whole) + outputs;
+    return cells * (1 + 2) + path_rows + feature_bytes(whole, options_.cost) + outputs;
 }
 
 std::int64_t Matcher::tile_bytes(int tile_size_px, int threads) const
@@ -97,7 +97,7 @@ std::int64_t Matcher::tile_bytes(int tile_size_px, int threads) const
         images += 2 * (s.left_image.area() + s.right_image.area());
         const std::int64_t kept =
             level > 0 ? kept_bytes(s.windows, plan_.ranges[k].count(), options_) : 0;
-        most = std::max(most, feature_bytes(s) + kept + coarser_kept);
+        most = std::max(most, feature_bytes(s, options_.cost) + kept + coarser_kept);
         coarser_kept = kept;
     }
     const Rect seen =

@@ -17,11 +17,27 @@ constexpr std::array<std::pair<Mode, std::string_view>, 4> kModes{{
     {Mode::local, "local"},
 }};
 
-constexpr std::array<std::pair<Cost, std::string_view>, 4> kCosts{{
+constexpr std::array<std::pair<Cost, std::string_view>, 9> kCosts{{
     {Cost::census5x5, "census5x5"},
     {Cost::census7x7, "census7x7"},
     {Cost::census9x7, "census9x7"},
+    {Cost::pairs5x5, "pairs5x5"},
+    {Cost::ternary5x5, "ternary5x5"},
+    {Cost::census_ad, "census_ad"},
+    {Cost::pairs_bt, "pairs_bt"},
+    {Cost::birchfield_tomasi, "birchfield_tomasi"},
     {Cost::hmi, "hmi"},
+}};
+
+constexpr std::array<std::pair<Subpixel, std::string_view>, 2> kSubpixels{{
+    {Subpixel::census, "census"},
+    {Subpixel::sums, "sums"},
+}};
+
+constexpr std::array<std::pair<Fill, std::string_view>, 3> kFills{{
+    {Fill::none, "none"},
+    {Fill::occluded, "occluded"},
+    {Fill::all, "all"},
 }};
 
 template <typename Table, typename Value>
@@ -72,6 +88,13 @@ void Options::validate() const
     require(p1 >= 0 && p1 <= p2, "p1", p1, "0..p2");
     require(left_right_px >= -1 && left_right_px <= 64, "left_right_px", left_right_px,
             "off or 0..64");
+    require(speckle_px == 0 || (speckle_px >= 2 && speckle_px <= 500), "speckle_px", speckle_px,
+            "off or 2..500");
+    require(speckle_range_px >= 1 && speckle_range_px <= 64, "speckle_range_px",
+            speckle_range_px, "1..64");
+    require(min_confidence >= 0 && min_confidence <= 255, "min_confidence", min_confidence,
+            "0..255");
+    require(fill_px >= 1 && fill_px <= 256, "fill_px", fill_px, "1..256");
     require(median == 1 || median == 3 || median == 5, "median", median, "1 (off), 3 or 5");
 }
 
@@ -106,6 +129,16 @@ std::string_view name(Cost cost)
     return name_in(kCosts, cost);
 }
 
+std::string_view name(Subpixel subpixel)
+{
+    return name_in(kSubpixels, subpixel);
+}
+
+std::string_view name(Fill fill)
+{
+    return name_in(kFills, fill);
+}
+
 Mode mode_from_name(std::string_view name)
 {
     return value_in(kModes, name, "mode");
@@ -114,6 +147,25 @@ Mode mode_from_name(std::string_view name)
 Cost cost_from_name(std::string_view name)
 {
     return value_in(kCosts, name, "cost");
+}
+
+Subpixel subpixel_from_name(std::string_view name)
+{
+    return value_in(kSubpixels, name, "subpixel");
+}
+
+Fill fill_from_name(std::string_view name)
+{
+    return value_in(kFills, name, "fill");
+}
+
+std::vector<Cost> all_costs()
+{
+    std::vector<Cost> costs;
+    for (const auto& [cost, text] : kCosts) {
+        costs.push_back(cost);
+    }
+    return costs;
 }
 
 CostTraits traits(Cost cost)
@@ -125,6 +177,14 @@ CostTraits traits(Cost cost)
         return {48, 3, 3};
     case Cost::census9x7:
         return {59, 3, 4};
+    case Cost::ternary5x5:
+        return {48, 2, 2};
+    case Cost::pairs5x5:
+    case Cost::census_ad:
+    case Cost::pairs_bt:
+        return {59, 2, 2};
+    case Cost::birchfield_tomasi:
+        return {58, 2, 3};
     case Cost::hmi:
         return {48, 0, 0};
     }

@@ -120,7 +120,7 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.prepare_bytes =
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
-    budget.refine_bytes = kBaseBytes + refine_bytes(shape);
+    budget.refine_bytes = kBaseBytes + refine_bytes(shape, job.matcher, budget.threads);
     budget.scratch_disk_bytes =
         PreparedPair::disk_bytes(shape, pyramid_levels) + FirstPass::disk_bytes(shape);
     budget.output_disk_bytes = output_bytes(job, shape);

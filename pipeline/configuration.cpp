@@ -21,7 +21,9 @@ matcher::Options read_matcher(ConfigSection section)
     o.mode = matcher::mode_from_name(
         section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
     o.cost = matcher::cost_from_name(
-        section.choice("cost", "census7x7", {"census5x5", "census7x7", "census9x7", "hmi"}));
+        section.choice("cost", "census7x7",
+                       {"census5x5", "census7x7", "census9x7", "pairs5x5", "ternary5x5",
+                        "census_ad", "pairs_bt", "birchfield_tomasi", "hmi"}));
     o.paths =
         std::stoi(section.choice("paths", std::to_string(o.paths), {"4", "5", "8", "16"}));
     o.levels = section.integer_or("levels", "auto", std::nullopt, 1, 12).value_or(0);
@@ -33,7 +35,15 @@ matcher::Options read_matcher(ConfigSection section)
     o.prune = section.flag("prune", o.prune);
     o.left_right_px =
         section.integer_or("left_right_px", "off", o.left_right_px, 0, 64).value_or(-1);
+    o.speckle_px = section.integer_or("speckle_px", "off", o.speckle_px, 2, 500).value_or(0);
+    o.speckle_range_px = section.integer("speckle_range_px", o.speckle_range_px, 1, 64);
+    o.subpixel =
+        matcher::subpixel_from_name(section.choice("subpixel", "census", {"census", "sums"}));
+    o.min_confidence = section.integer("min_confidence", o.min_confidence, 0, 255);
     o.median = section.integer_or("median", "off", o.median, 1, 5).value_or(1);
+    o.fill =
+        matcher::fill_from_name(section.choice("fill", "none", {"none", "occluded", "all"}));
+    o.fill_px = section.integer("fill_px", o.fill_px, 1, 256);
     try {
         o.validate();
     } catch (const std::invalid_argument& error) {

@@ -19,7 +19,15 @@ std::map<std::string, std::string> provenance(const Job& job)
         {"HSGM_PRUNE", m.prune ? "on" : "off"},
         {"HSGM_LEFT_RIGHT",
          m.left_right_px < 0 ? "off" : fmt::format("{} px", m.left_right_px)},
+        {"HSGM_SPECKLE", m.speckle_px == 0 ? "off"
+                                           : fmt::format("below {} px, range {} px",
+                                                         m.speckle_px, m.speckle_range_px)},
+        {"HSGM_SUBPIXEL", std::string(name(m.subpixel))},
+        {"HSGM_MIN_CONFIDENCE", std::to_string(m.min_confidence)},
         {"HSGM_MEDIAN", std::to_string(m.median)},
+        {"HSGM_FILL", m.fill == matcher::Fill::none
+                          ? "none"
+                          : fmt::format("{}, up to {} px", name(m.fill), m.fill_px)},
     };
 }
 

@@ -1,6 +1,7 @@
 #include "io/error.h"
 #include "io/gdal_session.h"
 #include "pipeline/budget.h"
+#include "pipeline/commands/bench_command.h"
 #include "pipeline/commands/evaluate_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
@@ -14,7 +15,12 @@
 
 #include <csignal>
 #include <exception>
+#include <limits>
 #include <new>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace {
 
@@ -75,10 +81,22 @@ int run(CLI::App& app, int argc, char** argv)
     }
 }
 
+// Tiles take and free the same tens of megabytes over and over. The C library would give
+// them back to the system each time and get them anew, cleared: a tenth of the computing time.
+void keep_freed_memory()
+{
+#ifdef __GLIBC__
+    constexpr int kLargestAllowed = 32 << 20; // glibc's own limit of this setting
+    mallopt(M_MMAP_THRESHOLD, kLargestAllowed);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
+    keep_freed_memory();
     // Results go to standard output, everything about them to standard error.
     spdlog::set_default_logger(spdlog::stderr_color_mt("hsgm"));
     spdlog::set_pattern("%^%l%$: %v");
@@ -103,5 +121,6 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_evaluate_command(app);
     hsgm::pipeline::add_synth_command(app);
     hsgm::pipeline::add_info_command(app);
+    hsgm::pipeline::add_bench_command(app);
     return run(app, argc, argv);
 }

@@ -163,6 +163,13 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
     for (std::size_t i = done; i < paths.size(); ++i) {
         sweep(sweep_job(job, volumes, start_or_none, kept, i), workspace.sweep);
     }
+    MatchStatistics work{1, cost.rect.area() * range.count(), 0};
+    for (const Direction r : paths) {
+        const int halo = job.whole ? 0 : job.options->halo_px;
+        work.path_steps +=
+            path_region(core, r, halo, rect_of(job.features->left_size)).area() * range.count();
+    }
+    job.work->add(work);
     return {core, range, cost.stride, volumes.sums};
 }
 

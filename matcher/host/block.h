@@ -8,6 +8,7 @@
 #include "matcher/host/sweep.h"
 #include "matcher/host/tile_output.h"
 #include "matcher/host/window_paths.h"
+#include "matcher/host/work_counter.h"
 
 #include <optional>
 
@@ -26,6 +27,7 @@ struct LevelJob {
     bool whole = false;      ///< one block: the image; its work is spread over the threads
     bool keep_lines = false; ///< a finer level starts its paths here
     bool keep_prior = false; ///< a finer level reads its prior here
+    WorkCounter* work = nullptr;
 };
 
 /// Buffers of one worker, reused from block to block.

@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -21,7 +23,10 @@ namespace hsgm::matcher::host {
 struct CensusWork {
     const tiling::Patch<std::uint16_t>& image;
     tiling::Size full;
-    CensusShape shape;
+    std::span<const CensusBit> bits;
+    int tolerance;
+    int radius_rows;
+    int radius_cols;
     FeaturePlanes& out;
 };
 
@@ -35,10 +40,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Vectors may run this far over the end of a row.
 constexpr int kSlack = 64;
-constexpr int kBitsAPlane = 8;
+constexpr std::size_t kBitsAPlane = 8;
 
-// Pixels are compared as signed numbers, which every instruction set can. Nodata is then the
-// largest one of either width, and darker than nothing.
+// Pixels are compared as signed numbers, which every instruction set can.
 template <typename T>
 T biased(std::uint16_t pixel)
 {
@@ -47,47 +51,57 @@ T biased(std::uint16_t pixel)
     return static_cast<T>(static_cast<Unsigned>(pixel) ^ kBias);
 }
 
-// Rows of the image, biased and padded at the image's borders: as many as the neighbourhood
-// has.
+// Rows of the image, biased and padded at the image's borders, as many as the bits reach: as
+// they are compared from below, the tolerance added and nodata the largest number of all, and
+// from above, nodata the smallest.
 template <typename T>
 class PaddedRows {
 public:
     explicit PaddedRows(const CensusWork& work)
-        : work_(work), count_(2 * work.shape.radius_rows + 1),
-          length_(work.out.rect().cols + 2 * work.shape.radius_cols),
-          values_(std::size_t(count_) * pitch())
+        : work_(work), count_(2 * work.radius_rows + 1),
+          length_(work.out.rect().cols + 2 * work.radius_cols),
+          values_(2 * std::size_t(count_) * pitch())
     {
     }
 
     // The entry of the rectangle's first column.
-    const T* row(int row) const { return begin(row) + work_.shape.radius_cols; }
+    const T* less(int row) const { return values_.data() + slot(row) + work_.radius_cols; }
+    const T* more(int row) const { return less(row) + pitch(); }
 
     void load(int row)
     {
         const tiling::Rect& rect = work_.out.rect();
-        const int first = rect.col - work_.shape.radius_cols;
+        const int first = rect.col - work_.radius_cols;
         const int begin = std::max(first, 0);
         const int end = std::min(first + length_, work_.full.cols);
-        const std::uint16_t* from =
-            &work_.image.at(std::clamp(row, 0, work_.full.rows - 1), begin);
-        T* to = this->begin(row);
-        T* inside = to + (begin - first);
-        for (int i = 0; i < end - begin; ++i) {
-            inside[i] = biased<T>(from[i]);
+        T* less = values_.data() + slot(row);
+        T* more = less + pitch();
+        convert(&work_.image.at(std::clamp(row, 0, work_.full.rows - 1), begin), end - begin,
+                less + (begin - first), more + (begin - first));
+        for (T* to : {less, more}) {
+            std::fill(to, to + (begin - first), to[begin - first]);
+            std::fill(to + (end - first), to + length_, to[end - first - 1]);
         }
-        std::fill(to, inside, *inside);
-        std::fill(inside + (end - begin), to + length_, inside[end - begin - 1]);
     }
 
 private:
-    std::size_t pitch() const { return std::size_t(length_ + kSlack); }
-    const T* begin(int row) const
+    void convert(const std::uint16_t* HWY_RESTRICT pixels, int count, T* HWY_RESTRICT less,
+                 T* HWY_RESTRICT more) const
     {
-        return values_.data() + std::size_t((row + count_) % count_) * pitch();
+        for (int i = 0; i < count; ++i) {
+            less[i] = biased<T>(pixels[i]);
+            more[i] = pixels[i] == kNodataPixel ? std::numeric_limits<T>::min() : less[i];
+        }
+        const hn::ScalableTag<T> d;
+        const auto tolerance = hn::Set(d, static_cast<T>(work_.tolerance));
+        for (int i = 0; work_.tolerance > 0 && i < count; i += int(hn::Lanes(d))) {
+            hn::StoreU(hn::SaturatedAdd(hn::LoadU(d, less + i), tolerance), d, less + i);
+        }
     }
-    T* begin(int row)
+    std::size_t pitch() const { return std::size_t(length_ + kSlack); }
+    std::size_t slot(int row) const
     {
-        return values_.data() + std::size_t((row + count_) % count_) * pitch();
+        return 2 * std::size_t((row + count_) % count_) * pitch();
     }
 
     const CensusWork& work_;
@@ -107,7 +121,7 @@ template <class D, typename T>
 HWY_INLINE hn::Vec<D> compare(D d, const Comparison<T>* bits, std::size_t at)
 {
     auto byte = hn::Zero(d);
-    for (int k = 0; k < kBitsAPlane; ++k) {
+    for (std::size_t k = 0; k < kBitsAPlane; ++k) {
         const auto is_less =
             hn::Lt(hn::LoadU(d, bits[k].less + at), hn::LoadU(d, bits[k].more + at));
         byte = hn::Sub(hn::Add(byte, byte), hn::VecFromMask(d, is_less));
@@ -139,14 +153,15 @@ template <typename T>
 class CensusRows {
 public:
     explicit CensusRows(const CensusWork& work)
-        : work_(work), padded_(work), bits_(std::size_t(work.shape.planes() * kBitsAPlane)),
+        : work_(work), padded_(work),
+          bits_((work.bits.size() + kBitsAPlane - 1) / kBitsAPlane * kBitsAPlane),
           bytes_(std::size_t(work.out.rect().cols + kSlack))
     {
     }
 
     void run(int row_begin, int row_end)
     {
-        const int radius = work_.shape.radius_rows;
+        const int radius = work_.radius_rows;
         for (int row = row_begin - radius; row < row_begin + radius; ++row) {
             padded_.load(row);
         }
@@ -159,21 +174,18 @@ public:
 private:
     void write_bits(int row)
     {
-        const T* centre = padded_.row(row);
-        // Left over bits compare the centre with itself.
-        std::fill(bits_.begin(), bits_.end(), Comparison<T>{centre, centre});
-        std::size_t bit = 0;
-        for (int dr = -work_.shape.radius_rows; dr <= work_.shape.radius_rows; ++dr) {
-            for (int dc = -work_.shape.radius_cols; dc <= work_.shape.radius_cols; ++dc) {
-                if (dr != 0 || dc != 0) {
-                    bits_[bit++].less = padded_.row(row + dr) + dc;
-                }
-            }
+        // Bits left over compare a row with itself, and stay 0.
+        std::fill(bits_.begin(), bits_.end(),
+                  Comparison<T>{padded_.less(row), padded_.less(row)});
+        for (std::size_t i = 0; i < work_.bits.size(); ++i) {
+            const CensusBit& bit = work_.bits[i];
+            bits_[i] = {padded_.less(row + bit.less.row) + bit.less.col,
+                        padded_.more(row + bit.more.row) + bit.more.col};
         }
         const auto cols = std::size_t(work_.out.rect().cols);
-        for (int plane = 0; plane < work_.shape.planes(); ++plane) {
-            compare_row(bits_.data() + plane * kBitsAPlane, cols, bytes_.data());
-            work_.out.write(plane, row, bytes_.data());
+        for (std::size_t i = 0; i < bits_.size(); i += kBitsAPlane) {
+            compare_row(bits_.data() + i, cols, bytes_.data());
+            work_.out.write(static_cast<int>(i / kBitsAPlane), row, bytes_.data());
         }
     }
 
@@ -216,15 +228,18 @@ bool fits_bytes(std::span<const std::uint16_t> pixels)
 
 } // namespace
 
-void census(const tiling::Patch<std::uint16_t>& image, tiling::Size full, CensusShape shape,
-            FeaturePlanes& out)
+void census(const tiling::Patch<std::uint16_t>& image, tiling::Size full,
+            std::span<const CensusBit> bits, int tolerance, FeaturePlanes& out)
 {
     const tiling::Rect& rect = out.rect();
-    if (rect.empty()) {
-        return;
+    CensusWork work{image, full, bits, tolerance, 0, 0, out};
+    for (const CensusBit& bit : bits) {
+        for (const Offset offset : {bit.less, bit.more}) {
+            work.radius_rows = std::max(work.radius_rows, std::abs(offset.row));
+            work.radius_cols = std::max(work.radius_cols, std::abs(offset.col));
+        }
     }
-    const CensusWork work{image, full, shape, out};
-    const bool narrow = fits_bytes(image.pixels.pixels());
+    const bool narrow = tolerance < 128 && fits_bytes(image.pixels.pixels());
     tbb::parallel_for(
         tbb::blocked_range<int>(rect.row, rect.row_end(), 64),
         [&](const tbb::blocked_range<int>& rows) {

@@ -1,7 +1,5 @@
 #include "matcher/host/hamming.h"
 
-#include <algorithm>
-#include <bit>
 #include <stdexcept>
 
 // The instruction that counts the bits of bytes is worth a target of its own here.
@@ -12,178 +10,186 @@
 #include <hwy/highway.h>
 // After Highway: compiled once for every target.
 #include "matcher/host/cost_row-inl.h"
+#include "matcher/host/sampling-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hsgm::matcher::host::HWY_NAMESPACE {
 
-// How differing bits become a cost.
-template <int kFactor, int kMost>
-struct Weighing {
-    template <class D>
-    static HWY_INLINE hn::Vec<D> weigh(D d, hn::Vec<D> bits)
-    {
-        if constexpr (kFactor == 2) {
-            bits = hn::Add(bits, bits);
-        }
-        if constexpr (kMost < 64) {
-            bits = hn::Min(bits, hn::Set(d, std::uint8_t{kMost}));
-        }
-        return bits;
-    }
-};
+// The number of bits set in each byte.
+template <class D>
+HWY_INLINE hn::Vec<D> count_bits(D d, hn::Vec<D> bytes)
+{
+#if HWY_TARGET == HWY_AVX3_DL || HWY_ARCH_ARM
+    (void)d;
+    return hn::PopulationCount(bytes);
+#else
+    alignas(16) static constexpr std::uint8_t kBits[16] = {0, 1, 1, 2, 1, 2, 2, 3,
+                                                           1, 2, 2, 3, 2, 3, 3, 4};
+    const auto table = hn::LoadDup128(d, kBits);
+    const auto low = hn::And(bytes, hn::Set(d, std::uint8_t{15}));
+    return hn::Add(hn::TableLookupBytes(table, low),
+                   hn::TableLookupBytes(table, hn::ShiftRight<4>(bytes)));
+#endif
+}
 
-// `kRuns` runs of bytes a pixel. A Run knows how to count the bits in which the byte of a left
-// pixel differs from those of right ones.
-template <int kRuns, class Run, class Weight>
+// Counts the bits in which `planes` bytes of a left pixel differ from those of right ones. A
+// Weight makes a cost of the number, and of what the planes after these hold. (Were the number
+// of planes known to the compiler, it would unroll the loop and add up what it then cannot
+// keep in registers.)
+template <class Weight>
 class Hamming {
 public:
-    explicit Hamming(const CostRow& row)
-        : left_(row.left), left_pitch_(row.left_pitch), right_(row.right),
-          right_pitch_(row.right_pitch)
-    {
-    }
+    Hamming(const CostRow& row, int planes) : row_(row), planes_(planes) {}
 
     template <int kVectors, class D, class Writer>
     HWY_INLINE void vectors(D d, int pixel, std::size_t first, std::size_t at,
                             const Writer& writer) const
     {
         const std::size_t lanes = hn::Lanes(d);
-        const std::uint8_t* left = left_ + pixel;
-        const std::uint8_t* right = right_ + first + at;
+        const std::uint8_t* left = row_.left + pixel;
+        const std::uint8_t* right = row_.right + first + at;
         auto sum0 = hn::Zero(d);
         auto sum1 = sum0;
         auto sum2 = sum0;
         auto sum3 = sum0;
-        for (int k = 0; k < kRuns; ++k, left += left_pitch_, right += right_pitch_) {
-            const auto one = Run::left(d, *left);
-            sum0 = hn::Add(sum0, Run::differing(one, hn::LoadU(d, right)));
+        for (int k = 0; k < planes_; ++k, left += row_.left_pitch, right += row_.right_pitch) {
+            const auto byte = hn::Set(d, *left);
+            sum0 = hn::Add(sum0, differing(d, byte, right));
             if constexpr (kVectors >= 2) {
-                sum1 = hn::Add(sum1, Run::differing(one, hn::LoadU(d, right + lanes)));
+                sum1 = hn::Add(sum1, differing(d, byte, right + lanes));
             }
             if constexpr (kVectors == 4) {
-                sum2 = hn::Add(sum2, Run::differing(one, hn::LoadU(d, right + 2 * lanes)));
-                sum3 = hn::Add(sum3, Run::differing(one, hn::LoadU(d, right + 3 * lanes)));
+                sum2 = hn::Add(sum2, differing(d, byte, right + 2 * lanes));
+                sum3 = hn::Add(sum3, differing(d, byte, right + 3 * lanes));
             }
         }
-        writer.write(d, at, Weight::weigh(d, sum0));
+        const Weight weight(row_, left, right);
+        writer.write(d, at, weight.cost(d, sum0, 0));
         if constexpr (kVectors >= 2) {
-            writer.write(d, at + lanes, Weight::weigh(d, sum1));
+            writer.write(d, at + lanes, weight.cost(d, sum1, lanes));
         }
         if constexpr (kVectors == 4) {
-            writer.write(d, at + 2 * lanes, Weight::weigh(d, sum2));
-            writer.write(d, at + 3 * lanes, Weight::weigh(d, sum3));
+            writer.write(d, at + 2 * lanes, weight.cost(d, sum2, 2 * lanes));
+            writer.write(d, at + 3 * lanes, weight.cost(d, sum3, 3 * lanes));
         }
     }
 
 private:
-    const std::uint8_t* left_;
-    std::size_t left_pitch_;
+    template <class D>
+    static HWY_INLINE hn::Vec<D> differing(D d, hn::Vec<D> byte, const std::uint8_t* right)
+    {
+        return count_bits(d, hn::Xor(byte, hn::LoadU(d, right)));
+    }
+
+    const CostRow& row_;
+    int planes_;
+};
+
+struct Once {
+    Once(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits, std::size_t) const
+    {
+        return bits;
+    }
+};
+
+struct Twice {
+    Twice(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D, hn::Vec<D> bits, std::size_t) const
+    {
+        return hn::Add(bits, bits);
+    }
+};
+
+template <int kMost>
+struct AtMost {
+    AtMost(const CostRow&, const std::uint8_t*, const std::uint8_t*) {}
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t) const
+    {
+        return hn::Min(bits, hn::Set(d, std::uint8_t{kMost}));
+    }
+};
+
+// Twice the bits, and half the difference of tones as far as that goes.
+class WithTones {
+public:
+    WithTones(const CostRow&, const std::uint8_t* left, const std::uint8_t* right)
+        : left_(*left), right_(right)
+    {
+    }
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t at) const
+    {
+        const auto left = hn::Set(d, left_);
+        const auto right = hn::LoadU(d, right_ + at);
+        const auto difference =
+            hn::Or(hn::SaturatedSub(left, right), hn::SaturatedSub(right, left));
+        const auto half = hn::ShiftRight<1>(hn::Min(difference, hn::Set(d, std::uint8_t{24})));
+        return hn::Min(hn::Add(hn::Add(bits, bits), half), hn::Set(d, std::uint8_t{59}));
+    }
+
+private:
+    std::uint8_t left_;
     const std::uint8_t* right_;
-    std::size_t right_pitch_;
 };
 
-#if HWY_TARGET == HWY_AVX3_DL || HWY_ARCH_ARM
+// Three quarters of the bits, and five eighths of the difference of gradients. What saturates
+// before it is divided is far above the cap.
+class WithGradients {
+public:
+    WithGradients(const CostRow& row, const std::uint8_t* left, const std::uint8_t* right)
+        : row_(row), left_(left), right_(right)
+    {
+    }
 
-// One instruction counts the bits of every byte.
-struct CountedBytes {
     template <class D>
-    static HWY_INLINE hn::Vec<D> left(D d, std::uint8_t byte)
+    HWY_INLINE hn::Vec<D> cost(D d, hn::Vec<D> bits, std::size_t at) const
     {
-        return hn::Set(d, byte);
+        const Sample<D> gradient(d, left_, row_.left_pitch);
+        const auto difference = gradient.difference(d, right_ + at, row_.right_pitch);
+        const auto of_bits = hn::Add(hn::Add(bits, bits), bits);
+        const auto of_gradients =
+            hn::Add(hn::Add(difference, difference), hn::ShiftRight<1>(difference));
+        const auto cost = hn::ShiftRight<2>(hn::SaturatedAdd(of_bits, of_gradients));
+        return hn::Min(cost, hn::Set(d, std::uint8_t{59}));
     }
-    template <class V>
-    static HWY_INLINE V differing(V left, V right)
-    {
-        return hn::PopulationCount(hn::Xor(left, right));
-    }
+
+private:
+    const CostRow& row_;
+    const std::uint8_t* left_;
+    const std::uint8_t* right_;
 };
 
-template <int kPlanes, class Weight>
-HWY_INLINE void hamming_row(const CostRow& row, std::uint8_t*, std::uint8_t* costs)
+void census5x5_row(const CostRow& row, std::uint8_t* costs)
 {
-    fill_row(row, Hamming<kPlanes, CountedBytes, Weight>(row), costs);
+    fill_row(row, Hamming<Twice>(row, 3), costs);
 }
 
-#else
-
-// differing[16 * a + b]: the bits in which half bytes a and b differ.
-alignas(16) constexpr auto kDiffering = [] {
-    std::array<std::uint8_t, 256> table{};
-    for (unsigned i = 0; i < 256; ++i) {
-        table[i] = static_cast<std::uint8_t>(std::popcount((i >> 4) ^ (i & 15)));
-    }
-    return table;
-}();
-
-// Half bytes: that of the left pixel, times 16, chooses a row of the table, and one
-// instruction looks up those of right pixels in it.
-struct LookedUpHalves {
-    template <class D>
-    static HWY_INLINE hn::Vec<D> left(D d, std::uint8_t half_byte)
-    {
-        return hn::LoadDup128(d, kDiffering.data() + half_byte);
-    }
-    template <class V>
-    static HWY_INLINE V differing(V table, V right)
-    {
-        return hn::TableLookupBytes(table, right);
-    }
-};
-
-// Planes of whole bytes to twice as many of half bytes; the left ones stay times 16.
-HWY_INLINE void split_left(const std::uint8_t* HWY_RESTRICT bytes, std::size_t count,
-                           std::uint8_t* HWY_RESTRICT low, std::uint8_t* HWY_RESTRICT high)
+void six_planes_row(const CostRow& row, std::uint8_t* costs)
 {
-    for (std::size_t i = 0; i < count; ++i) {
-        low[i] = static_cast<std::uint8_t>(bytes[i] << 4);
-        high[i] = static_cast<std::uint8_t>(bytes[i] & 0xF0);
-    }
+    fill_row(row, Hamming<Once>(row, 6), costs);
 }
 
-HWY_INLINE void split_right(const std::uint8_t* HWY_RESTRICT bytes, std::size_t count,
-                            std::uint8_t* HWY_RESTRICT low, std::uint8_t* HWY_RESTRICT high)
+void eight_planes_row(const CostRow& row, std::uint8_t* costs)
 {
-    for (std::size_t i = 0; i < count; ++i) {
-        low[i] = static_cast<std::uint8_t>(bytes[i] & 15);
-        high[i] = static_cast<std::uint8_t>(bytes[i] >> 4);
-    }
+    fill_row(row, Hamming<AtMost<59>>(row, 8), costs);
 }
 
-template <int kPlanes, class Weight>
-HWY_INLINE void hamming_row(const CostRow& row, std::uint8_t* split, std::uint8_t* costs)
+void census_ad_row(const CostRow& row, std::uint8_t* costs)
 {
-    CostRow halves = row;
-    halves.left_pitch = static_cast<std::size_t>(row.cols);
-    halves.right_pitch = static_cast<std::size_t>(row.met()) + 64;
-    halves.left = split;
-    std::uint8_t* right = split + 2 * kPlanes * halves.left_pitch;
-    halves.right = right;
-    for (std::size_t k = 0; k < kPlanes; ++k) {
-        std::uint8_t* left = split + 2 * k * halves.left_pitch;
-        split_left(row.left + k * row.left_pitch, halves.left_pitch, left,
-                   left + halves.left_pitch);
-        split_right(row.right + k * row.right_pitch, static_cast<std::size_t>(row.met()), right,
-                    right + halves.right_pitch);
-        right += 2 * halves.right_pitch;
-    }
-    fill_row(halves, Hamming<2 * kPlanes, LookedUpHalves, Weight>(halves), costs);
+    fill_row(row, Hamming<WithTones>(row, 3), costs);
 }
 
-#endif
-
-void census5x5_row(const CostRow& row, std::uint8_t* split, std::uint8_t* costs)
+void pairs_bt_row(const CostRow& row, std::uint8_t* costs)
 {
-    hamming_row<3, Weighing<2, 64>>(row, split, costs);
-}
-
-void census7x7_row(const CostRow& row, std::uint8_t* split, std::uint8_t* costs)
-{
-    hamming_row<6, Weighing<1, 64>>(row, split, costs);
-}
-
-void census9x7_row(const CostRow& row, std::uint8_t* split, std::uint8_t* costs)
-{
-    hamming_row<8, Weighing<1, 59>>(row, split, costs);
+    fill_row(row, Hamming<WithGradients>(row, 8), costs);
 }
 
 } // namespace hsgm::matcher::host::HWY_NAMESPACE
@@ -193,22 +199,26 @@ HWY_AFTER_NAMESPACE();
 namespace hsgm::matcher::host {
 
 HWY_EXPORT(census5x5_row);
-HWY_EXPORT(census7x7_row);
-HWY_EXPORT(census9x7_row);
+HWY_EXPORT(six_planes_row);
+HWY_EXPORT(eight_planes_row);
+HWY_EXPORT(census_ad_row);
+HWY_EXPORT(pairs_bt_row);
 
-void hamming_costs(Cost cost, const CostRow& row, Buffer<std::uint8_t>& split,
-                   std::uint8_t* costs)
+void hamming_costs(Cost cost, const CostRow& row, std::uint8_t* costs)
 {
-    constexpr std::size_t kMostPlanes = 8;
-    std::uint8_t* room = split.need(
-        2 * kMostPlanes * (static_cast<std::size_t>(row.cols + row.met()) + 64) + kMostPlanes);
     switch (cost) {
     case Cost::census5x5:
-        return HWY_DYNAMIC_DISPATCH(census5x5_row)(row, room, costs);
+        return HWY_DYNAMIC_DISPATCH(census5x5_row)(row, costs);
     case Cost::census7x7:
-        return HWY_DYNAMIC_DISPATCH(census7x7_row)(row, room, costs);
+    case Cost::ternary5x5: // 48 bits both
+        return HWY_DYNAMIC_DISPATCH(six_planes_row)(row, costs);
     case Cost::census9x7:
-        return HWY_DYNAMIC_DISPATCH(census9x7_row)(row, room, costs);
+    case Cost::pairs5x5: // 62 and 64 bits
+        return HWY_DYNAMIC_DISPATCH(eight_planes_row)(row, costs);
+    case Cost::census_ad:
+        return HWY_DYNAMIC_DISPATCH(census_ad_row)(row, costs);
+    case Cost::pairs_bt:
+        return HWY_DYNAMIC_DISPATCH(pairs_bt_row)(row, costs);
     default:
         throw std::logic_error("hamming_costs: no census cost");
     }

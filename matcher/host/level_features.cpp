@@ -1,14 +1,20 @@
 #include "matcher/host/level_features.h"
 
+#include "matcher/host/birchfield_tomasi.h"
 #include "matcher/host/census.h"
+#include "matcher/host/gradient.h"
 #include "matcher/host/texture.h"
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 namespace hsgm::matcher::host {
 
 namespace {
+
+// Tells features apart that follow each other in the same place of memory.
+std::atomic<std::uint64_t> features_made{0};
 
 using tiling::Patch;
 using tiling::Rect;
@@ -36,25 +42,56 @@ void write_tones(const Patch<std::uint16_t>& image, Tone tone, int plane, Featur
     }
 }
 
+// The tolerance of a census: one tone, in the values of an image.
+int tolerance(Cost cost, Tone tone)
+{
+    return cost == Cost::ternary5x5 ? (tone.hi - tone.lo + 127) / 255 : 0;
+}
+
+int census_planes(Cost cost)
+{
+    return (static_cast<int>(census_bits(cost).size()) + 7) / 8;
+}
+
 FeaturePlanes cost_planes(const Patch<std::uint16_t>& image, Size full, const Rect& rect,
                           Tone tone, Cost cost, bool mirrored)
 {
-    const CostTraits radius = traits(cost);
-    const CensusShape shape{radius.radius_rows, radius.radius_cols};
-    FeaturePlanes planes(rect, cost == Cost::hmi ? 1 : shape.planes(), mirrored);
+    FeaturePlanes planes(rect, feature_bytes(cost), mirrored);
     if (rect.empty()) {
         return planes;
     }
-    if (cost == Cost::hmi) {
-        write_tones(image, tone, 0, planes);
-    } else {
-        census(image, full, shape, planes);
+    const auto bits = census_bits(cost);
+    if (!bits.empty()) {
+        census(image, full, bits, tolerance(cost, tone), planes);
+    }
+    if (cost == Cost::hmi || cost == Cost::census_ad) {
+        write_tones(image, tone, census_planes(cost), planes);
+    }
+    if (cost == Cost::pairs_bt || cost == Cost::birchfield_tomasi) {
+        gradients(image, full, tone, census_planes(cost), cost == Cost::birchfield_tomasi,
+                  planes);
     }
     write_validity(image, planes);
     return planes;
 }
 
 } // namespace
+
+int feature_bytes(Cost cost)
+{
+    const int census = census_planes(cost);
+    switch (cost) {
+    case Cost::census_ad:
+    case Cost::hmi:
+        return census + 1;
+    case Cost::pairs_bt:
+        return census + 3;
+    case Cost::birchfield_tomasi:
+        return census + 6;
+    default:
+        return census;
+    }
+}
 
 LevelFeatures level_features(const LevelImages& images, const LevelPlan& plan, int level,
                              const Rect& aggregation, const PairTraits& pair,
@@ -67,12 +104,14 @@ LevelFeatures level_features(const LevelImages& images, const LevelPlan& plan, i
     f.images = &images;
     f.left_tone = tones(images.left, pair.left_tone);
     f.low_texture = low_texture(images.left, f.left_tone, aggregation);
-    const Rect seen =
-        intersect(right_reach(aggregation, plan.ranges[k]), rect_of(f.right_size));
-    f.left =
-        cost_planes(images.left, f.left_size, aggregation, pair.left_tone, options.cost, false);
+    // A cost that looks at its neighbours' differences needs features of these, too.
+    const Rect left =
+        intersect(expand(aggregation, cost_block_radius(options.cost)), rect_of(f.left_size));
+    const Rect right = intersect(right_reach(left, plan.ranges[k]), rect_of(f.right_size));
+    f.left = cost_planes(images.left, f.left_size, left, pair.left_tone, options.cost, false);
     f.right =
-        cost_planes(images.right, f.right_size, seen, pair.right_tone, options.cost, true);
+        cost_planes(images.right, f.right_size, right, pair.right_tone, options.cost, true);
+    f.number = ++features_made;
     return f;
 }
 

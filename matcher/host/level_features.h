@@ -7,6 +7,9 @@
 
 namespace hsgm::matcher::host {
 
+/// Bytes a pixel that a matching cost reads of either image, validity not counted.
+int feature_bytes(Cost cost);
+
 /// What matching reads of one level's images, computed once for all windows of a tile.
 struct LevelFeatures {
     tiling::Size left_size; ///< of the whole level
@@ -14,8 +17,9 @@ struct LevelFeatures {
     const LevelImages* images = nullptr;
     tiling::Patch<std::uint8_t> left_tone;
     tiling::Patch<std::uint8_t> low_texture;
-    FeaturePlanes left;  ///< what the matching cost reads
-    FeaturePlanes right; ///< the same, mirrored
+    FeaturePlanes left;       ///< what the matching cost reads
+    FeaturePlanes right;      ///< the same, mirrored
+    std::uint64_t number = 0; ///< another one for every call of level_features
 };
 
 /// The features of level `level` for matching the pixels of `aggregation`.

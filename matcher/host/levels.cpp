@@ -84,6 +84,7 @@ LevelJob<L> Levels<L>::job(int level, const LevelFeatures& features) const
     job.range = plan_.ranges[static_cast<std::size_t>(level)];
     job.keep_lines = level > 0;
     job.keep_prior = level > 0 && options_.prior;
+    job.work = &work_;
     return job;
 }
 
@@ -99,6 +100,7 @@ std::shared_ptr<const CoarseSolution> Levels<L>::solve_whole(const LevelImages& 
     auto& block = result->level.blocks.emplace_back();
     BlockWorkspace<L> workspace;
     const BlockSums sums = solve_block(whole, image, whole.range, block.lines, workspace);
+    result->work = work_.total();
     result->level.size = image.size();
     result->level.windows = image;
     if (level > 0) {
@@ -199,7 +201,10 @@ TileMatch Levels<L>::solve_tile(const Rect& core, std::span<const LevelImages> i
             level_job.penalties = &penalties;
         }
         if (level == 0) {
-            return solve_windows_to_tile(level_job, support[k].windows, core, workspaces);
+            TileMatch tile =
+                solve_windows_to_tile(level_job, support[k].windows, core, workspaces);
+            tile.work = work_.total();
+            return tile;
         }
         kept = solve_windows(level_job, support[k].windows, workspaces);
         coarser = &kept;

@@ -17,6 +17,8 @@ public:
     virtual ~CoarseSolution() = default;
     /// Bytes it keeps.
     virtual std::int64_t bytes() const = 0;
+
+    MatchStatistics work; ///< that solving it took
 };
 
 } // namespace hsgm::matcher
@@ -66,6 +68,7 @@ private:
     const PairTraits& pair_;
     const Options& options_;
     const LevelPlan& plan_;
+    mutable WorkCounter work_;
 };
 
 } // namespace hsgm::matcher::host

@@ -1,9 +1,9 @@
 #include "matcher/host/matching_cost.h"
 
-#include "matcher/host/coarse_start.h"
+#include "matcher/host/birchfield_tomasi.h"
 #include "matcher/host/hamming.h"
 #include "matcher/host/lookup.h"
-#include "matcher/kernel.h"
+#include "matcher/host/prior.h"
 
 #include <algorithm>
 #include <cstring>
@@ -14,14 +14,13 @@ namespace {
 
 // The right runs of a row, of which left pixel i meets entry cols - 1 - i + j at disparity
 // number j: in place where the image reaches that far, else copied, with entries that are not
-// valid where there is no image.
-void set_right(const FeaturePlanes& planes, const CostVolume& volume, int row, CostRow& out,
+// valid where there is no image. `last_col` is the column of the first entry.
+void set_right(const FeaturePlanes& planes, int row, int last_col, CostRow& out,
                Buffer<std::uint8_t>& room)
 {
     const int met = out.met();
-    const int last_col = volume.rect.col_end() - 1 - volume.range.min;
-    const int at = planes.rect().col_end() - 1 - last_col; // of the first entry in the runs
-    const int begin = std::clamp(-at, 0, met);             // entries with a pixel
+    const int at = planes.rect().col_end() - 1 - last_col;
+    const int begin = std::clamp(-at, 0, met); // entries with a pixel
     const int end = std::clamp(planes.rect().cols - at, begin, met);
     if (begin == 0 && end == met) {
         out.right = planes.run(0, row) + at;
@@ -49,32 +48,80 @@ const std::uint8_t* padding(const CostRow& row, Buffer<std::uint8_t>& room)
     return bytes;
 }
 
+// The pixels [col, col_end) of a row.
+CostRow cost_row(const LevelFeatures& features, const CostVolume& volume, int row, int col,
+                 int col_end, int half, CostWorkspace& workspace)
+{
+    const FeaturePlanes& left = features.left;
+    const int left_at = col - left.rect().col;
+    CostRow r;
+    r.cols = col_end - col;
+    r.count = volume.range.count();
+    r.stride = volume.stride;
+    r.half = static_cast<std::uint8_t>(half);
+    r.left = left.run(0, row) + left_at;
+    r.left_pitch = static_cast<std::size_t>(left.rect().cols);
+    r.left_valid = left.validity(row) + left_at;
+    set_right(features.right, row, col_end - 1 - volume.range.min, r, workspace.right);
+    r.plain = r.count == r.stride &&
+              std::memchr(r.right_valid, 0, static_cast<std::size_t>(r.met())) == nullptr;
+    if (!r.plain) {
+        r.padding = padding(r, workspace.padding);
+    }
+    return r;
+}
+
+// Sums over three columns of the rows round `row`, of which those known from the rows before
+// are not made again.
+void block_row(const LevelFeatures& features, const CostVolume& volume, int row,
+               std::uint8_t* costs, CostWorkspace& workspace)
+{
+    BlockRows& block = workspace.block;
+    const tiling::Rect& rect = volume.rect;
+    const tiling::Size image = features.left_size;
+    const bool known = block.features == features.number && block.rect == rect &&
+                       block.range == volume.range && block.last_row == row;
+    const auto pitch = std::size_t(rect.cols) * std::size_t(volume.stride);
+    std::uint8_t* sums = block.sums.need(3 * pitch);
+    const int begin = std::max(rect.col - 1, 0);
+    const int end = std::min(rect.col_end() + 1, image.cols);
+    std::uint8_t* differences =
+        block.differences.need(std::size_t(end - begin) * std::size_t(volume.stride));
+    const int last = std::min(row + 1, image.rows - 1);
+    for (int r = known ? row + 1 : std::max(row - 1, 0); r <= last; ++r) {
+        difference_sums(cost_row(features, volume, r, begin, end, kHalfDifference, workspace),
+                        rect.col - begin, end - rect.col_end(), differences,
+                        sums + std::size_t(r % 3) * pitch);
+    }
+    block.features = features.number;
+    block.rect = rect;
+    block.range = volume.range;
+    block.last_row = row + 1;
+    const auto of_row = [&](int r) { return sums + std::size_t(r % 3) * pitch; };
+    const std::uint8_t* const three[3] = {of_row(std::max(row - 1, 0)), of_row(row),
+                                          of_row(last)};
+    block_costs(three,
+                cost_row(features, volume, row, rect.col, rect.col_end(),
+                         traits(Cost::birchfield_tomasi).max / 2, workspace),
+                costs);
+}
+
 } // namespace
 
 void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Cost cost,
                        const CostVolume& volume, int row, std::uint8_t* costs,
                        CostWorkspace& workspace)
 {
-    const FeaturePlanes& left = features.left;
-    const int left_at = volume.rect.col - left.rect().col;
-    CostRow r;
-    r.cols = volume.rect.cols;
-    r.count = volume.range.count();
-    r.stride = volume.stride;
-    r.half = static_cast<std::uint8_t>(traits(cost).max / 2);
-    r.left = left.run(0, row) + left_at;
-    r.left_pitch = static_cast<std::size_t>(left.rect().cols);
-    r.left_valid = left.validity(row) + left_at;
-    set_right(features.right, volume, row, r, workspace.right);
-    r.plain = r.count == r.stride &&
-              std::memchr(r.right_valid, 0, static_cast<std::size_t>(r.met())) == nullptr;
-    if (!r.plain) {
-        r.padding = padding(r, workspace.padding);
+    if (cost == Cost::birchfield_tomasi) {
+        block_row(features, volume, row, costs, workspace);
+        return;
     }
+    const CostRow r = cost_row(features, volume, row, volume.rect.col, volume.rect.col_end(),
+                               traits(cost).max / 2, workspace);
     if (cost == Cost::hmi) {
         lookup_costs(*pair.hmi, r, costs);
     } else {
-        hamming_costs(cost, r, workspace.split, costs);
+        hamming_costs(cost, r, costs);
     }
 }
 
@@ -83,19 +130,19 @@ void add_prior_row(const LevelFeatures& features, const LevelResult<L>& coarser,
                    const CostVolume& volume, int row, std::uint8_t* costs,
                    CostWorkspace& workspace)
 {
-    const int count = volume.range.count();
-    std::uint8_t* prior = workspace.prior.need(2 * std::size_t(count) + 16);
-    std::uint8_t* scratch = prior + count + 4;
-    for (int i = 0; i < volume.rect.cols; ++i, costs += volume.stride) {
-        const int col = volume.rect.col + i;
-        if (features.low_texture.at(row, col) == 0) {
-            continue;
-        }
-        const auto& block = coarser.block_at(row / 2, col / 2);
-        spread_disparities(block.prior_at(row / 2, col / 2), block.range, volume.range,
-                           std::uint8_t{kPriorCap}, scratch, prior);
-        for (int d = 0; d < count; ++d) {
-            costs[d] = static_cast<std::uint8_t>(costs[d] + (prior[d] >> 2));
+    const tiling::Rect& rect = volume.rect;
+    const auto of_flat = [&](int col) {
+        return col >= rect.col && col < rect.col_end() && features.low_texture.at(row, col) != 0
+                   ? costs + std::ptrdiff_t{col - rect.col} * volume.stride
+                   : nullptr;
+    };
+    // Two columns share one coarse pixel.
+    for (int col = rect.col / 2 * 2; col < rect.col_end(); col += 2) {
+        std::uint8_t* const pixels[2] = {of_flat(col), of_flat(col + 1)};
+        if (pixels[0] != nullptr || pixels[1] != nullptr) {
+            const auto& block = coarser.block_at(row / 2, col / 2);
+            add_prior({block.prior_at(row / 2, col / 2), block.range, volume.range},
+                      volume.stride, pixels, workspace.prior);
         }
     }
 }

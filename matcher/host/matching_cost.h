@@ -7,12 +7,24 @@
 
 namespace hsgm::matcher::host {
 
+/// The sums of the last rows that a cost over blocks has added up, and what they are of.
+struct BlockRows {
+    static constexpr int kNone = -2;
+
+    std::uint64_t features = 0;
+    tiling::Rect rect;
+    tiling::DisparityRange range;
+    int last_row = kNone; ///< the rows up to this one are known
+    Buffer<std::uint8_t> differences;
+    Buffer<std::uint8_t> sums; ///< of three rows
+};
+
 /// Buffers of `matching_costs`, reused from window to window.
 struct CostWorkspace {
     Buffer<std::uint8_t> right;
     Buffer<std::uint8_t> padding;
-    Buffer<std::uint8_t> split;
     Buffer<std::uint8_t> prior;
+    BlockRows block;
 };
 
 /// Matching costs C(p, d) of row `row` of `volume` (docs/algorithm.md, section 3), the prior

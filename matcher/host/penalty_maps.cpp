@@ -2,6 +2,8 @@
 
 #include "matcher/kernel.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cstdlib>
 
 namespace hsgm::matcher::host {
@@ -22,14 +24,14 @@ PenaltyMaps::PenaltyMaps(const tiling::Patch<std::uint8_t>& left_tone, const til
         const tiling::Rect both =
             intersect(intersect(map_area, tone),
                       {tone.row + r.row, tone.col + r.col, tone.rows, tone.cols});
-        for (int row = both.row; row < both.row_end(); ++row) {
+        tbb::parallel_for(both.row, both.row_end(), [&](int row) {
             const std::uint8_t* here = &left_tone.at(row, both.col);
             const std::uint8_t* before = &left_tone.at(row - r.row, both.col - r.col);
             std::uint8_t* out = &maps_[i].at(row, both.col);
             for (int c = 0; c < both.cols; ++c) {
                 out[c] = p2[std::size_t(std::abs(here[c] - before[c]))];
             }
-        }
+        });
     }
 }
 

@@ -24,6 +24,8 @@ TileOutput::TileOutput(const tiling::Rect& core, const LevelFeatures& features,
     result_.reasons = tiling::Image<std::uint16_t>(core.size());
     const auto seen = intersect(right_reach(core, pair.shape.asked), rect_of(pair.shape.right));
     result_.right_keys = tiling::Patch<std::uint32_t>(seen, kNoKey);
+    const auto right = features.images->right.pixels.pixels();
+    right_has_gaps_ = std::find(right.begin(), right.end(), kNodataPixel) != right.end();
 }
 
 void TileOutput::add(const BlockSums& sums, OutputWorkspace& workspace)
@@ -80,7 +82,7 @@ void TileOutput::add_reasons(const Winner* winners, int range_min, int row, int 
         }
         if (x - asked.max > right_cols - 1 || x - asked.min < 0) {
             reasons |= kOutside;
-        } else if (counterpart >= 0 && counterpart < right_cols &&
+        } else if (right_has_gaps_ && counterpart >= 0 && counterpart < right_cols &&
                    !is_valid(right.at(row, counterpart))) {
             reasons |= kNodataRight;
         }
@@ -102,12 +104,10 @@ void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int co
     const std::scoped_lock lock(row_locks_[static_cast<std::size_t>(row) % kLocks]);
     std::uint32_t* keys = &target.at(row, last_col - begin);
     for (int j = begin; j < end; ++j, --keys) {
-        const std::uint16_t pixel = candidates.pixel(j);
-        if (pixel != RightCandidates::kNobody) {
-            const auto index = static_cast<std::uint32_t>(j - (part.cols - 1 - pixel));
-            *keys =
-                std::min(*keys, std::uint32_t{candidates.sum(j)} << 16 | (asked_first + index));
-        }
+        const std::uint32_t pixel = candidates.pixel(j);
+        const std::uint32_t index = std::uint32_t(j - (part.cols - 1)) + pixel + asked_first;
+        const std::uint32_t key = candidates.sum(j) << 16 | (index & 0xFFFFU);
+        *keys = std::min(*keys, pixel == RightCandidates::kNobody ? kNoKey : key);
     }
 }
 

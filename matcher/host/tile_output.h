@@ -42,6 +42,7 @@ private:
     const LevelFeatures& features_;
     const PairTraits& pair_;
     TileMatch result_;
+    bool right_has_gaps_ = false; ///< pixels without data
     std::vector<std::mutex> row_locks_;
 };
 

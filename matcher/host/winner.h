@@ -54,7 +54,7 @@ public:
     /// left-most pixel's stays, which has the lowest disparity.
     void merge(const SumsRow& row, const std::uint8_t* valid);
 
-    std::uint16_t sum(int number) const { return left_.sums[index(number)]; }
+    std::uint32_t sum(int number) const { return left_.sums[index(number)]; }
     /// The left pixel, or kNobody.
     std::uint16_t pixel(int number) const { return left_.pixels[index(number)]; }
 

@@ -31,7 +31,8 @@ void print_info()
                    device.free_bytes >> 20, device.memory_bytes >> 20);
     }
     fmt::print("modes     hsgm, hsgm-paper, sgm, local\n");
-    fmt::print("costs     census5x5, census7x7, census9x7, hmi\n");
+    fmt::print("costs     census5x5, census7x7, census9x7, pairs5x5, ternary5x5, census_ad,\n"
+               "          pairs_bt, birchfield_tomasi, hmi\n");
     fmt::print("libraries GDAL {}, oneTBB {}\n", io::gdal_version(), TBB_runtime_version());
 }
 

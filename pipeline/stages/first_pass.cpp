@@ -42,14 +42,14 @@ void FirstPass::store(const matcher::TileMatch& tile)
     right_keys_.write(keys.rect, keys.pixels.view());
 }
 
-matcher::RefineInput FirstPass::read(const tiling::Rect& core,
-                                     const matcher::Options& options) const
+matcher::RefineInput FirstPass::read(const matcher::RefineSupport& support) const
 {
-    const tiling::Rect grown =
-        intersect(expand(core, matcher::refine_margin_px(options)), rect_of(shape_.left));
-    return {read_part(disparity_q8_, grown), read_part(confidence_, grown),
-            read_part(reasons_, grown),
-            read_part(right_keys_, matcher::keys_of(grown, shape_))};
+    matcher::RefineInput input;
+    input.disparity_q8 = read_part(disparity_q8_, support.first_pass);
+    input.confidence = read_part(confidence_, support.first_pass);
+    input.reasons = read_part(reasons_, support.first_pass);
+    input.right_keys = read_part(right_keys_, support.right_keys);
+    return input;
 }
 
 std::int64_t FirstPass::disk_bytes(const matcher::PairShape& shape)

@@ -17,8 +17,9 @@ public:
     /// tiles may come in any order, but one at a time.
     void store(const matcher::TileMatch& tile);
 
-    /// What `refine` needs for `core`. Only after every tile is stored.
-    matcher::RefineInput read(const tiling::Rect& core, const matcher::Options& options) const;
+    /// What `refine` needs of the first pass; its images stay empty. Only after every tile is
+    /// stored.
+    matcher::RefineInput read(const matcher::RefineSupport& support) const;
 
     /// Bytes of scratch disk for a pair of this shape.
     static std::int64_t disk_bytes(const matcher::PairShape& shape);

@@ -120,14 +120,14 @@ void match_tiles(const PlannedJob& planned, const Matcher& matcher,
 MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
 {
     const Job& job = planned.job;
-    io::RasterSource left(job.left);
-    io::RasterSource right(job.right);
+    FileSource left{io::RasterSource(job.left)};
+    FileSource right{io::RasterSource(job.right)};
     const io::ScratchFolder scratch(folder_of(job.outputs.disparity));
     FirstPass first_pass(planned.shape, scratch.path());
     const PreparedPair prepared(left, right, planned.pyramid_levels, scratch.path());
     const Matcher matcher(pair_traits(planned, prepared), job.matcher);
     match_tiles(planned, matcher, prepared, first_pass, progress);
-    return refine_and_write(first_pass, planned.shape, job, planned.geo);
+    return refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
 }
 
 // Pictures for people, made from the finished rasters.

@@ -18,17 +18,16 @@ struct Span {
     double most = -std::numeric_limits<double>::infinity();
 };
 
-void widen(Span& span, io::RasterSource& source)
+void widen(Span& span, PixelSource& source)
 {
-    const int rows = strip_rows(source);
-    tiling::Image<double> strip({rows, source.size().cols});
-    for (int row = 0; row < source.size().rows; row += rows) {
+    tiling::Image<double> pixels;
+    for (const tiling::Rect& window : source.reading_windows()) {
         check_stop();
-        const int count = std::min(rows, source.size().rows - row);
-        source.read({row, 0, count, source.size().cols},
-                    strip.view().part({0, 0, count, source.size().cols}));
-        for (const double value :
-             strip.pixels().first(std::size_t(count) * std::size_t(source.size().cols))) {
+        if (pixels.size() != window.size()) {
+            pixels = tiling::Image<double>(window.size());
+        }
+        source.read(window, pixels);
+        for (const double value : pixels.pixels()) {
             if (!std::isnan(value)) {
                 span.least = std::min(span.least, value);
                 span.most = std::max(span.most, value);
@@ -44,7 +43,7 @@ bool keeps_values(io::PixelType type)
 
 } // namespace
 
-PixelMapping find_mapping(io::RasterSource& left, io::RasterSource& right)
+PixelMapping find_mapping(PixelSource& left, PixelSource& right)
 {
     if (keeps_values(left.pixel_type()) && keeps_values(right.pixel_type())) {
         return {};
@@ -83,19 +82,6 @@ matcher::Tone find_tone(io::PixelType type, const PixelHistogram& histogram)
     }
     lo = std::max(lo, 0);
     return {lo, hi > lo ? hi : lo + 1};
-}
-
-int strip_rows(const io::RasterSource& source)
-{
-    constexpr std::int64_t kStripBytes = 16 << 20;
-    const tiling::Size size = source.size();
-    const std::int64_t row_bytes = std::int64_t{size.cols} * 8;
-    const int fitting =
-        static_cast<int>(std::clamp<std::int64_t>(kStripBytes / row_bytes, 1, size.rows));
-    const int block = std::max(source.block_size().rows, 1);
-    // Compressed blocks are decoded as a whole: a strip of less than one decodes it again
-    // and again unless GDAL's cache holds a row of them.
-    return block <= fitting ? fitting / block * block : fitting;
 }
 
 } // namespace hsgm::pipeline

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "io/raster_source.h"
 #include "matcher/pixel.h"
+#include "pipeline/stages/pixel_source.h"
 
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ struct PixelMapping {
 
 /// The mapping of a pair. Reads both images through once unless their types need none.
 /// Integers whose span fits 16 bits are only shifted.
-PixelMapping find_mapping(io::RasterSource& left, io::RasterSource& right);
+PixelMapping find_mapping(PixelSource& left, PixelSource& right);
 
 /// Counts of every valid pixel value of an image.
 using PixelHistogram = std::array<std::uint64_t, 65536>;
@@ -37,8 +37,5 @@ using PixelHistogram = std::array<std::uint64_t, 65536>;
 /// The tone of an image from its type and its full-resolution histogram: the identity for
 /// 8-bit images, else between the 0.1 and 99.9 percentiles (docs/algorithm.md, section 1).
 matcher::Tone find_tone(io::PixelType type, const PixelHistogram& histogram);
-
-/// Rows of an image to read at a time: whole blocks, about 16 MiB of doubles.
-int strip_rows(const io::RasterSource& source);
 
 } // namespace hsgm::pipeline

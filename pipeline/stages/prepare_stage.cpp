@@ -35,25 +35,23 @@ std::vector<Raster> make_levels(const std::filesystem::path& folder, const std::
 
 // Copies a source into level 0 and returns the counts of its valid pixels.
 std::unique_ptr<PixelHistogram>
-copy_full_resolution(io::RasterSource& source, const PixelMapping& mapping, Raster& level0)
+copy_full_resolution(PixelSource& source, const PixelMapping& mapping, Raster& level0)
 {
     auto histogram = std::make_unique<PixelHistogram>();
-    const int rows = strip_rows(source);
-    const int cols = source.size().cols;
-    tiling::Image<double> values({rows, cols});
-    tiling::Image<std::uint16_t> pixels({rows, cols});
-    for (int row = 0; row < source.size().rows; row += rows) {
+    tiling::Image<double> values;
+    tiling::Image<std::uint16_t> pixels;
+    for (const Rect& window : source.reading_windows()) {
         check_stop();
-        const int count = std::min(rows, source.size().rows - row);
-        const Rect strip{row, 0, count, cols};
-        source.read(strip, values.view().part({0, 0, count, cols}));
-        const auto n = static_cast<std::size_t>(strip.area());
-        std::transform(values.pixels().begin(), values.pixels().begin() + std::ptrdiff_t(n),
-                       pixels.data(), mapping);
-        for (const std::uint16_t pixel : pixels.pixels().first(n)) {
+        if (values.size() != window.size()) {
+            values = tiling::Image<double>(window.size());
+            pixels = tiling::Image<std::uint16_t>(window.size());
+        }
+        source.read(window, values);
+        std::transform(values.pixels().begin(), values.pixels().end(), pixels.data(), mapping);
+        for (const std::uint16_t pixel : pixels.pixels()) {
             ++(*histogram)[pixel];
         }
-        level0.write(strip, pixels.view().part({0, 0, count, cols}));
+        level0.write(window, pixels.view());
     }
     (*histogram)[matcher::kNodataPixel] = 0;
     return histogram;
@@ -79,7 +77,7 @@ void reduce_level(const Raster& fine, Raster& coarse)
         });
 }
 
-matcher::Tone fill(io::RasterSource& source, const PixelMapping& mapping,
+matcher::Tone fill(PixelSource& source, const PixelMapping& mapping,
                    std::vector<Raster>& levels)
 {
     const auto histogram = copy_full_resolution(source, mapping, levels.front());
@@ -103,7 +101,7 @@ Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
 
 } // namespace
 
-PreparedPair::PreparedPair(io::RasterSource& left, io::RasterSource& right, int levels,
+PreparedPair::PreparedPair(PixelSource& left, PixelSource& right, int levels,
                            const std::filesystem::path& scratch_folder)
 {
     left_.levels =

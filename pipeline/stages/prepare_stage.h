@@ -1,11 +1,11 @@
 #pragma once
 
 #include "io/geo_reference.h"
-#include "io/raster_source.h"
 #include "io/scratch_raster.h"
 #include "matcher/level_plan.h"
 #include "matcher/matcher.h"
 #include "pipeline/job.h"
+#include "pipeline/stages/pixel_source.h"
 
 #include <filesystem>
 #include <vector>
@@ -19,7 +19,7 @@ public:
     /// Streams both sources through once (twice for float sources) and reduces them level by
     /// level; memory does not grow with the images. Throws InputError for an image without a
     /// single valid pixel.
-    PreparedPair(io::RasterSource& left, io::RasterSource& right, int levels,
+    PreparedPair(PixelSource& left, PixelSource& right, int levels,
                  const std::filesystem::path& scratch_folder);
 
     matcher::Tone left_tone() const { return left_.tone; }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -22,7 +23,7 @@ using tiling::Size;
 // Pieces are whole blocks of the outputs, in the order in which blocks lie in the file.
 constexpr int kPieceRows = 256;
 constexpr int kPieceCols = 2048;
-constexpr std::size_t kPiecesInFlight = 4;
+constexpr int kMostPiecesInFlight = 4;
 
 class Pieces {
 public:
@@ -147,6 +148,27 @@ private:
     std::optional<io::GeoTiffWriter> depth_;
 };
 
+// One more than can be computed at once, so that writing need not wait.
+int pieces_in_flight(int threads)
+{
+    return std::min(threads + 1, kMostPiecesInFlight);
+}
+
+matcher::RefineInput read_piece(const Rect& piece, const FirstPass& first_pass,
+                                const PreparedPair& prepared, const matcher::PairShape& shape,
+                                const matcher::Options& options)
+{
+    const matcher::RefineSupport support = matcher::refine_support(piece, shape, options);
+    matcher::RefineInput input = first_pass.read(support);
+    tiling::LevelSupport pixels;
+    pixels.left_image = support.left_image;
+    pixels.right_image = support.right_image;
+    matcher::LevelImages images = prepared.read(0, pixels);
+    input.left = std::move(images.left);
+    input.right = std::move(images.right);
+    return input;
+}
+
 void count(const matcher::Refined& piece, MatchSummary& summary)
 {
     for (const std::uint16_t reasons : piece.reasons.pixels()) {
@@ -160,8 +182,9 @@ void count(const matcher::Refined& piece, MatchSummary& summary)
 
 } // namespace
 
-MatchSummary refine_and_write(const FirstPass& first_pass, const matcher::PairShape& shape,
-                              const Job& job, const io::GeoReference& geo)
+MatchSummary refine_and_write(const FirstPass& first_pass, const PreparedPair& prepared,
+                              const matcher::PairShape& shape, const Job& job,
+                              const io::GeoReference& geo)
 {
     const matcher::Options options = job.matcher.resolved();
     Writers writers(job, shape.left, geo);
@@ -179,7 +202,8 @@ MatchSummary refine_and_write(const FirstPass& first_pass, const matcher::PairSh
     const auto compute = [&](const Rect& rect) {
         auto piece = std::make_shared<Piece>();
         piece->rect = rect;
-        piece->refined = matcher::refine(rect, first_pass.read(rect, options), shape, options);
+        piece->refined = matcher::refine(
+            rect, read_piece(rect, first_pass, prepared, shape, options), shape, options);
         if (!job.outputs.height.empty()) {
             piece->height = heights(piece->refined.disparity_px, job.geometry);
         }
@@ -193,23 +217,31 @@ MatchSummary refine_and_write(const FirstPass& first_pass, const matcher::PairSh
         count(piece->refined, summary);
     };
     tbb::parallel_pipeline(
-        kPiecesInFlight, tbb::make_filter<void, Rect>(tbb::filter_mode::serial_in_order, next) &
-                             tbb::make_filter<Rect, std::shared_ptr<Piece>>(
-                                 tbb::filter_mode::parallel, compute) &
-                             tbb::make_filter<std::shared_ptr<Piece>, void>(
-                                 tbb::filter_mode::serial_in_order, write));
+        static_cast<std::size_t>(pieces_in_flight(tbb::this_task_arena::max_concurrency())),
+        tbb::make_filter<void, Rect>(tbb::filter_mode::serial_in_order, next) &
+            tbb::make_filter<Rect, std::shared_ptr<Piece>>(tbb::filter_mode::parallel,
+                                                           compute) &
+            tbb::make_filter<std::shared_ptr<Piece>, void>(tbb::filter_mode::serial_in_order,
+                                                           write));
     writers.finish();
     return summary;
 }
 
-std::int64_t refine_bytes(const matcher::PairShape& shape)
+std::int64_t refine_bytes(const matcher::PairShape& shape, const matcher::Options& options,
+                          int threads)
 {
-    const Rect piece = intersect({0, 0, kPieceRows + 4, kPieceCols + 4}, rect_of(shape.left));
-    constexpr std::int64_t kInputBytes = 4 + 1 + 2 + 2; // the reasons are copied once
-    constexpr std::int64_t kOutputBytes = 4 + 1 + 2 + 4 + 4;
-    const std::int64_t keys = 4 * matcher::keys_of(piece, shape).area();
-    return static_cast<std::int64_t>(kPiecesInFlight) *
-           (piece.area() * (kInputBytes + kOutputBytes) + keys);
+    // A piece in the middle of a large image, whose support is nowhere clipped.
+    const auto middle_of = [](int length, int piece) {
+        return std::max(0, std::min(length / 2, length - piece));
+    };
+    const Rect piece =
+        intersect({middle_of(shape.left.rows, kPieceRows),
+                   middle_of(shape.left.cols, kPieceCols), kPieceRows, kPieceCols},
+                  rect_of(shape.left));
+    constexpr std::int64_t kHeightAndDepth = 4 + 4;
+    return pieces_in_flight(threads) *
+           (matcher::refine_bytes(piece, shape, options.resolved()) +
+            piece.area() * kHeightAndDepth);
 }
 
 } // namespace hsgm::pipeline

@@ -139,8 +139,9 @@ int main(int argc, char** argv)
         if ((hwy::SupportedTargets() & target) == 0) {
             continue;
         }
-        for (const Cost cost :
-             {Cost::census5x5, Cost::census7x7, Cost::census9x7, Cost::hmi}) {
+        for (const Cost cost : {Cost::census5x5, Cost::census7x7, Cost::census9x7,
+                                Cost::pairs5x5, Cost::ternary5x5, Cost::census_ad,
+                                Cost::pairs_bt, Cost::birchfield_tomasi, Cost::hmi}) {
             add(cost, target);
         }
     }

@@ -14,7 +14,10 @@ import subprocess
 import sys
 import tempfile
 
-RAW = ["matcher.left_right_px=off", "matcher.median=1"]
+RAW = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.subpixel=sums", "matcher.median=off"]
+# Every pixel answers, but the answer is filtered, as that of OpenCV's matcher always is.
+ANSWERED = ["matcher.left_right_px=off", "matcher.speckle_px=off"]
+CLOSE_UP = ["matcher.cost=pairs_bt", "matcher.p1=20"]
 PATHS = {}
 
 
@@ -155,13 +158,16 @@ def middlebury(folder):
 
 
 def peers(folder):
-    print("### Every scene, default options\n")
-    header("scene", "threshold", "raw % bad", "checked % bad", "density %", "% bad among valid")
+    print("### Every scene\n")
+    header("scene", "threshold", "raw", "answered", "close-up, answered", "checked", "density %",
+           "% bad among valid")
     for threshold, scenes in ((1, CLASSICS + OTHERS), (3, COARSE)):
         for scene in scenes:
-            raw = score_scene(scene, RAW, folder, threshold)
-            checked = score_scene(scene, [], folder, threshold)
+            raw, answered, close_up, checked = (
+                score_scene(scene, settings, folder, threshold)
+                for settings in (RAW, ANSWERED, ANSWERED + CLOSE_UP, []))
             row(scene[0], f"{threshold} px", f"{bad(raw, threshold):.2f}",
+                f"{bad(answered, threshold):.2f}", f"{bad(close_up, threshold):.2f}",
                 f"{bad(checked, threshold):.2f}", f"{checked['density_percent']:.1f}",
                 f"{bad(checked, threshold, 'bad_answered_percent'):.2f}")
     print()

@@ -11,6 +11,7 @@ TEST_CASE("every command has help with an example")
                                                          {"match"},
                                                          {"run"},
                                                          {"plan"},
+                                                         {"bench"},
                                                          {"evaluate", "disparity"},
                                                          {"evaluate", "seams"},
                                                          {"synth"}};

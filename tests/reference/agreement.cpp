@@ -111,7 +111,6 @@ Outcome run_matcher(const Case& c)
     const auto coarse = matcher.solve_coarse(lefts.back(), rights.back());
 
     const Size size = c.pair.left.size();
-    const Rect image = tiling::rect_of(size);
     Outcome outcome;
     outcome.disparity_q8 = Image<std::int32_t>(size);
     outcome.first_confidence = Image<std::uint8_t>(size);
@@ -143,12 +142,13 @@ Outcome run_matcher(const Case& c)
     outcome.reasons = Image<std::uint16_t>(size);
     const matcher::PairShape shape = matcher.pair().shape;
     for (const Rect& piece : c.pieces) {
-        const Rect grown = tiling::intersect(
-            tiling::expand(piece, matcher::refine_margin_px(c.options)), image);
-        const matcher::RefineInput input{
-            cut(outcome.disparity_q8, grown), cut(outcome.first_confidence, grown),
-            cut(outcome.first_reasons, grown),
-            cut(outcome.right_keys, matcher::keys_of(grown, shape))};
+        const auto support = matcher::refine_support(piece, shape, c.options);
+        const matcher::RefineInput input{cut(outcome.disparity_q8, support.first_pass),
+                                         cut(outcome.first_confidence, support.first_pass),
+                                         cut(outcome.first_reasons, support.first_pass),
+                                         cut(outcome.right_keys, support.right_keys),
+                                         cut(c.pair.left, support.left_image),
+                                         cut(c.pair.right, support.right_image)};
         const matcher::Refined refined = matcher::refine(piece, input, shape, c.options);
         paste(outcome.disparity_px, piece, refined.disparity_px);
         paste(outcome.confidence, piece, refined.confidence);
@@ -189,8 +189,9 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     Options& o = c.options;
     o.mode = random.one_of(
         {Mode::hsgm, Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local});
-    o.cost = random.one_of(
-        {Cost::census5x5, Cost::census7x7, Cost::census7x7, Cost::census9x7, Cost::hmi});
+    o.cost = random.one_of({Cost::census5x5, Cost::census7x7, Cost::census7x7, Cost::census9x7,
+                            Cost::pairs5x5, Cost::ternary5x5, Cost::census_ad, Cost::pairs_bt,
+                            Cost::birchfield_tomasi, Cost::hmi});
     o.paths = random.one_of({4, 5, 8, 8, 16});
     o.levels = random.chance(80) ? random.between(1, 4) : 0;
     o.window_px = random.one_of({16, 16, 32, 64});
@@ -200,7 +201,13 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     o.prior = random.chance(60);
     o.prune = random.chance(60);
     o.left_right_px = random.between(-1, 3);
+    o.speckle_px = random.chance(30) ? 0 : random.between(2, random.one_of({4, 12, 60, 500}));
+    o.speckle_range_px = random.one_of({1, 1, 2, 64});
+    o.subpixel = random.chance(75) ? Subpixel::census : Subpixel::sums;
+    o.min_confidence = random.chance(50) ? 0 : random.between(0, 255);
     o.median = random.one_of({1, 3, 3, 5});
+    o.fill = random.one_of({Fill::none, Fill::occluded, Fill::all});
+    o.fill_px = random.one_of({1, 3, 20, 256});
     theme.vary(random, o);
 
     Size left{random.between(1, theme.most_side_px), random.between(1, theme.most_side_px)};
@@ -258,8 +265,11 @@ std::string Case::describe() const
         << ", paths " << options.paths << ", levels " << options.levels << ", window "
         << options.window_px << ", halo " << options.halo_px << ", p1 " << options.p1 << ", p2 "
         << options.p2 << ", prior " << options.prior << ", prune " << options.prune
-        << ", left_right_px " << options.left_right_px << ", median " << options.median
-        << ", tiles";
+        << ", left_right_px " << options.left_right_px << ", speckle_px " << options.speckle_px
+        << ", speckle_range_px " << options.speckle_range_px << ", subpixel "
+        << name(options.subpixel) << ", min_confidence " << options.min_confidence
+        << ", median " << options.median << ", fill " << name(options.fill) << ", fill_px "
+        << options.fill_px << ", tiles";
     for (const Rect& tile : tiles) {
         out << " " << tile;
     }

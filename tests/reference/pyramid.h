@@ -10,8 +10,10 @@
 namespace hsgm::reference {
 
 using matcher::Cost;
+using matcher::Fill;
 using matcher::Mode;
 using matcher::Options;
+using matcher::Subpixel;
 using tiling::DisparityRange;
 using tiling::Image;
 using tiling::Rect;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
 namespace hsgm::reference {
 
@@ -56,34 +58,224 @@ std::int32_t median_of_valid(const Image<std::int32_t>& disparity_q8,
     return values[(values.size() - 1) / 2];
 }
 
+Image<int> segment_sizes(const Surface& surface, int range_q8)
+{
+    const Size size = surface.q8.size();
+    Image<int> sizes(size, 0);
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            if (!surface.has(row, col) || sizes(row, col) != 0) {
+                continue;
+            }
+            std::vector<std::pair<int, int>> segment{{row, col}};
+            sizes(row, col) = -1; // met
+            for (std::size_t i = 0; i < segment.size(); ++i) {
+                const auto [r, c] = segment[i];
+                for (const auto& [nr, nc] :
+                     {std::pair{r - 1, c}, {r + 1, c}, {r, c - 1}, {r, c + 1}}) {
+                    if (surface.has(nr, nc) && sizes(nr, nc) == 0 &&
+                        std::abs(surface.q8(r, c) - surface.q8(nr, nc)) <= range_q8) {
+                        sizes(nr, nc) = -1;
+                        segment.emplace_back(nr, nc);
+                    }
+                }
+            }
+            for (const auto& [r, c] : segment) {
+                sizes(r, c) = static_cast<int>(segment.size());
+            }
+        }
+    }
+    return sizes;
+}
+
+std::vector<std::int32_t> values_around(const Surface& surface, int row, int col, int reach_px)
+{
+    std::vector<std::int32_t> values;
+    for (int down = -1; down <= 1; ++down) {
+        for (int right = -1; right <= 1; ++right) {
+            for (int i = 1; i <= reach_px && (down != 0 || right != 0); ++i) {
+                if (surface.has(row + i * down, col + i * right)) {
+                    values.push_back(surface.q8(row + i * down, col + i * right));
+                    break;
+                }
+            }
+        }
+    }
+    std::sort(values.begin(), values.end());
+    return values;
+}
+
+namespace {
+
+/// The whole image on its way through the steps.
+class Refinement {
+public:
+    Refinement(const MatchResult& match, DisparityRange asked, const Options& options)
+        : match_(match), level_(match.levels[0]), asked_(asked), options_(options),
+          size_(match.disparity_q8.size()), reasons_(match.reasons),
+          confidence_(size_, std::uint8_t{0})
+    {
+        surface_.q8 = match.disparity_q8;
+        surface_.winners = level_.winners;
+        surface_.has_value = Image<std::uint8_t>(size_);
+    }
+
+    RefineResult result()
+    {
+        check_left_right();
+        remove_speckles();
+        find_fractions();
+        find_confidences();
+        take_medians();
+        fill_holes();
+        RefineResult result{Image<float>(size_, -32768.0F), confidence_, reasons_};
+        each_value([&](int row, int col) {
+            result.disparity_px(row, col) = static_cast<float>(surface_.q8(row, col)) / 256.0F;
+        });
+        return result;
+    }
+
+private:
+    template <typename Body>
+    void each_pixel(Body body) const
+    {
+        for (int row = 0; row < size_.rows; ++row) {
+            for (int col = 0; col < size_.cols; ++col) {
+                body(row, col);
+            }
+        }
+    }
+    template <typename Body>
+    void each_value(Body body) const
+    {
+        each_pixel([&](int row, int col) {
+            if (surface_.has(row, col)) {
+                body(row, col);
+            }
+        });
+    }
+    void take_away(int row, int col, int reason)
+    {
+        reasons_(row, col) = static_cast<std::uint16_t>(reasons_(row, col) | reason);
+    }
+    void see_what_is_left()
+    {
+        each_pixel([&](int row, int col) {
+            surface_.has_value(row, col) = has_value(reasons_(row, col)) ? 1 : 0;
+            if (surface_.has_value(row, col) == 0) {
+                confidence_(row, col) = 0;
+            }
+        });
+    }
+
+    void check_left_right()
+    {
+        see_what_is_left();
+        if (options_.left_right_px < 0) {
+            return;
+        }
+        each_value([&](int row, int col) {
+            take_away(row, col,
+                      left_right_reason(match_.right_keys, row, col, surface_.winners(row, col),
+                                        asked_, options_.left_right_px));
+        });
+        see_what_is_left();
+    }
+
+    void remove_speckles()
+    {
+        if (options_.speckle_px == 0) {
+            return;
+        }
+        const Image<int> sizes = segment_sizes(surface_, 256 * options_.speckle_range_px);
+        each_value([&](int row, int col) {
+            if (sizes(row, col) < options_.speckle_px) {
+                take_away(row, col, matcher::kSpeckle);
+            }
+        });
+        see_what_is_left();
+    }
+
+    void find_fractions()
+    {
+        if (options_.subpixel != matcher::Subpixel::census) {
+            return;
+        }
+        Image<std::int32_t> values = surface_.q8;
+        each_value([&](int row, int col) {
+            values(row, col) = census_fraction(level_.pair.left, level_.pair.right, surface_,
+                                               asked_, row, col);
+        });
+        surface_.q8 = values;
+    }
+
+    void find_confidences()
+    {
+        each_value([&](int row, int col) {
+            confidence_(row, col) = confidence_at(surface_, match_.confidence, row, col);
+        });
+        each_value([&](int row, int col) {
+            if (confidence_(row, col) < options_.min_confidence) {
+                take_away(row, col, matcher::kUncertain);
+            }
+        });
+        see_what_is_left();
+    }
+
+    void take_medians()
+    {
+        Image<std::int32_t> values = surface_.q8;
+        each_value([&](int row, int col) {
+            values(row, col) =
+                median_of_valid(surface_.q8, reasons_, row, col, options_.median);
+        });
+        surface_.q8 = values;
+    }
+
+    void fill_holes()
+    {
+        if (options_.fill == matcher::Fill::none) {
+            return;
+        }
+        int closed = matcher::kOccluded;
+        if (options_.fill == matcher::Fill::all) {
+            closed |= matcher::kInconsistent | matcher::kSpeckle | matcher::kUncertain;
+        }
+        Surface filled = surface_;
+        each_pixel([&](int row, int col) {
+            const int reasons = reasons_(row, col);
+            if ((reasons & closed) == 0) {
+                return;
+            }
+            const auto values = values_around(surface_, row, col, options_.fill_px);
+            if (values.size() < 2) {
+                return;
+            }
+            const bool occluded = (reasons & matcher::kOccluded) != 0;
+            filled.q8(row, col) = occluded ? values[1] : values[(values.size() - 1) / 2];
+            filled.has_value(row, col) = 1;
+            confidence_(row, col) = 1;
+            reasons_(row, col) =
+                static_cast<std::uint16_t>((reasons & 0xFF00) | matcher::kInterpolated);
+        });
+        surface_ = filled;
+    }
+
+    const MatchResult& match_;
+    const Level& level_;
+    DisparityRange asked_;
+    const Options& options_;
+    Size size_;
+    Surface surface_;
+    Image<std::uint16_t> reasons_;
+    Image<std::uint8_t> confidence_;
+};
+
+} // namespace
+
 RefineResult refine(const MatchResult& match, DisparityRange asked, const Options& options)
 {
-    const Size size = match.disparity_q8.size();
-    RefineResult result;
-    result.disparity_px = Image<float>(size, -32768.0F);
-    result.confidence = Image<std::uint8_t>(size, 0);
-    result.reasons = match.reasons;
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            if (options.left_right_px >= 0 && has_value(match.reasons(row, col))) {
-                const std::uint16_t reason = left_right_reason(
-                    match.right_keys, row, col, match.levels[0].winners(row, col), asked,
-                    options.left_right_px);
-                result.reasons(row, col) |= reason;
-            }
-        }
-    }
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            if (has_value(result.reasons(row, col))) {
-                const std::int32_t fixed = median_of_valid(match.disparity_q8, result.reasons,
-                                                           row, col, options.median);
-                result.disparity_px(row, col) = static_cast<float>(fixed) / 256.0F;
-                result.confidence(row, col) = match.confidence(row, col);
-            }
-        }
-    }
-    return result;
+    return Refinement(match, asked, options).result();
 }
 
 } // namespace hsgm::reference

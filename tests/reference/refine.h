@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/reference/fraction.h"
 #include "tests/reference/match.h"
 
 namespace hsgm::reference {
@@ -16,12 +17,18 @@ struct RefineResult {
 std::uint16_t left_right_reason(const Image<std::uint32_t>& right_keys, int row, int x,
                                 int winner, DisparityRange asked, int tolerance_px);
 
-/// Step 5 for a pixel: the median over the pixels of its neighbourhood that have a value.
+/// Step 5: how many pixels the connected segment of each pixel has; 0 without a value.
+Image<int> segment_sizes(const Surface& surface, int range_q8);
+
+/// Step 9 for a pixel: the median over the pixels of its neighbourhood that have a value.
 /// At least one has.
 std::int32_t median_of_valid(const Image<std::int32_t>& disparity_q8,
                              const Image<std::uint16_t>& reasons, int row, int col, int side);
 
-/// Section 6, steps 4 and 5, and the outputs.
+/// What step 10 finds in the eight directions of a pixel, sorted.
+std::vector<std::int32_t> values_around(const Surface& surface, int row, int col, int reach_px);
+
+/// Section 6, steps 4 to 10, and the outputs.
 RefineResult refine(const MatchResult& match, DisparityRange asked, const Options& options);
 
 } // namespace hsgm::reference

@@ -88,6 +88,20 @@ Theme of_mode(Mode mode)
     return theme;
 }
 
+Theme of_cost(Cost cost, int paths, bool wide)
+{
+    Theme theme;
+    theme.most_count = 70;
+    theme.most_work = 40'000;
+    theme.vary = [cost, paths, wide](Random& random, Options& o) {
+        o.cost = cost;
+        o.paths = paths;
+        o.p2 = wide ? random.between(300, 4000) : random.between(24, 192);
+        o.p1 = random.between(0, 24);
+    };
+    return theme;
+}
+
 Theme defaults()
 {
     Theme theme;

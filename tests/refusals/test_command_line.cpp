@@ -68,3 +68,40 @@ TEST_CASE("overrides are refused by key as the file's own keys are")
     place.refused_pair("left.tif", "right.tif", 2, {"run.device", "banana", "auto, cpu, cuda"},
                        {"--device", "banana"});
 }
+
+TEST_CASE("a benchmark that makes no sense is refused before it takes any time")
+{
+    const EarlierResult place;
+    const std::string left = place / "left.tif";
+    const std::string right = place / "right.tif";
+    const auto refused = [&](std::vector<std::string> more, int code,
+                             const std::vector<std::string>& words) {
+        more.insert(more.begin(), "bench");
+        place.refused(more, code, words);
+    };
+    refused({"--device", "cuda"}, 4, {"--device cuda", "no CUDA device", "auto or cpu"});
+    refused({"--device", "cuda:1"}, 4, {"--device cuda:1"});
+    refused({"--device", "banana"}, 2, {"'banana'", "auto, cpu, cuda or cuda:N"});
+    refused({"--disparities", "100"}, 2, {"--disparities is 100", "multiple of 16"});
+    refused({"--side", "256", "--disparities", "80"}, 2,
+            {"80", "256 px", "a quarter of that, 64"});
+    refused({"--side", "10"}, 2, {"--side", "64 to 65536"});
+    refused({"--side", "60000", "--peers", "none"}, 4,
+            {"of memory, and", "choose a smaller side"});
+    refused({"--peers", "libsgm"}, 2, {"--peers", "hh, hh4, sgbm, 3way", "'libsgm'"});
+    refused({"--cost", "census"}, 2, {"--cost", "census5x5", "'census'"});
+    refused({"--instructions", "mmx"}, 2, {"--instructions", "avx512, avx2, sse4", "'mmx'"});
+    refused({"--threads", "0"}, 2,
+            {"--threads is '0'", "all, or whole numbers from 1 to 1024"});
+    refused({"--repeats", "0"}, 2, {"--repeats", "1 to 1000"});
+    refused({"--scene", "sea"}, 2, {"--scene", "town,towers"});
+    refused({"--set", "run.threads=2"}, 2, {"--set run.threads=2", "keys of `matcher` alone"});
+    refused({"--set", "matcher.pathes=4"}, 2, {"did you mean 'paths'?"});
+    refused({left}, 2, {"RIGHT is missing"});
+    refused({left, right}, 2, {"--disparity MIN,MAX"});
+    refused({left, right, "--disparity", "0,15", "--side", "512"}, 2, {"neither --side nor"});
+    refused({left, right, "--disparity", "15,0"}, 2, {"--disparity 15,0 is reversed"});
+    refused({left, right, "--disparity", "5000,5015"}, 2, {"no left pixel has a counterpart"});
+    refused({left, place / "none.tif", "--disparity", "0,15"}, 3, {"There is no file"});
+    refused({"--disparity", "0,15"}, 2, {"takes --disparities N"});
+}

@@ -230,12 +230,13 @@ matcher::Refined Match::refine_all(const Whole& first_pass, int piece_size_px) c
     const tiling::TilePlan plan(shape.left, piece_size_px);
     for (int piece = 0; piece < plan.count(); ++piece) {
         const Rect core = plan.core(piece);
-        const Rect grown =
-            intersect(expand(core, matcher::refine_margin_px(options)), rect_of(shape.left));
-        const matcher::RefineInput input{
-            cut(first_pass.disparity_q8, grown), cut(first_pass.confidence, grown),
-            cut(first_pass.reasons, grown),
-            cut(first_pass.right_keys, matcher::keys_of(grown, shape))};
+        const auto support = matcher::refine_support(core, shape, options);
+        const matcher::RefineInput input{cut(first_pass.disparity_q8, support.first_pass),
+                                         cut(first_pass.confidence, support.first_pass),
+                                         cut(first_pass.reasons, support.first_pass),
+                                         cut(first_pass.right_keys, support.right_keys),
+                                         cut(left_[0], support.left_image),
+                                         cut(right_[0], support.right_image)};
         const auto refined = matcher::refine(core, input, shape, options);
         paste(refined.disparity_px, core, whole.disparity_px);
         paste(refined.confidence, core, whole.confidence);

@@ -213,6 +213,10 @@ TEST_CASE("garbage outside the declared support of noise changes nothing")
         check_garbage_outside(pair, attentive(Mode::hsgm, Cost::census7x7, paths), 12);
     }
     check_garbage_outside(pair, attentive(Mode::hsgm_paper, Cost::census5x5, 8), 8);
+    for (const Cost cost : {Cost::pairs5x5, Cost::ternary5x5, Cost::census_ad, Cost::pairs_bt,
+                            Cost::birchfield_tomasi}) {
+        check_garbage_outside(pair, attentive(Mode::hsgm, cost, 8), 4);
+    }
 }
 
 TEST_CASE("garbage on any rim of the declared support is noticed")

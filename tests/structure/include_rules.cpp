@@ -58,7 +58,8 @@ std::optional<std::string> library_of(const std::string& header)
 {
     static const std::vector<std::pair<std::string, std::regex>> kLibraries{
         {"GDAL", std::regex(R"(^(gdal/)?(gdal|ogr|cpl_|vrtdataset|memdataset|gnm).*\.h$)")},
-        {"PROJ", std::regex(R"(^(proj/.*|proj|proj_api|geodesic)(\.h|\.hpp)?$)")},
+        {"PROJ",
+         std::regex(R"(^(proj/.*|proj|proj_api|proj_experimental|geodesic)(\.h|\.hpp)?$)")},
         {"OpenCV", std::regex(R"(^opencv.*)")},
     };
     for (const auto& [library, pattern] : kLibraries) {

@@ -100,6 +100,7 @@ TEST_CASE("an include against the architecture is reported with its place")
         {"io/a.h", "<gdal.h>"},
         {"io/a.h", "<ogr_spatialref.h>"},
         {"pipeline/geometry/a.h", "<proj.h>"},
+        {"pipeline/geometry/a.h", "<proj_experimental.h>"},
         {"pipeline/stages/a.h", "<opencv2/imgproc.hpp>"},
         {"io/a.h", "\"io/gdal_private.h\""},
         {"pipeline/stages/a.cpp", "\"io/gdal_private.h\""},

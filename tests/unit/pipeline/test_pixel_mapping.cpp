@@ -45,7 +45,7 @@ public:
     RowFile(const RowFile&) = delete;
     RowFile& operator=(const RowFile&) = delete;
 
-    io::RasterSource open() const { return io::RasterSource({path_}); }
+    FileSource open() const { return FileSource(io::RasterSource({path_})); }
 
 private:
     static inline int made_ = 0;

@@ -72,6 +72,91 @@ TEST_CASE("the twin caps census 9x7 at 59")
     CHECK(matching_cost(pair, 3, 3, 0) == 1);  // only the hollow is below
 }
 
+TEST_CASE("the twin compares touching pixels, both ways inside the block")
+{
+    CHECK(pairs_at(Image<std::uint16_t>({5, 5}, 9), 2, 2).none());
+    // A bright centre is above the 4 pixels that come after it, and by the bits the other way
+    // round above the 2 before it that share a side.
+    Image<std::uint16_t> peak({5, 5}, 9);
+    peak(2, 2) = 10;
+    CHECK(pairs_at(peak, 2, 2).count() == 4 + 2);
+    Image<std::uint16_t> corner({5, 5}, 9);
+    corner(0, 0) = 8; // touches one pixel of the block
+    CHECK(pairs_at(corner, 2, 2).count() == 1);
+    corner(0, 0) = 10;
+    CHECK(pairs_at(corner, 2, 2).none());
+    Image<std::uint16_t> slope({5, 5});
+    for (int row = 0; row < 5; ++row) {
+        for (int col = 0; col < 5; ++col) {
+            slope(row, col) = static_cast<std::uint16_t>(10 * row + col);
+        }
+    }
+    // Rising in reading order: of the 12 the bits that compare upwards, of the 52 those whose
+    // pixel in the block comes later: 3 of each of the three rows to the row above, and one
+    // to the left of each row's first.
+    CHECK(pairs_at(slope, 2, 2).count() == 12 + 9 + 3 + 4);
+    slope(2, 2) = kNodata;
+    CHECK(pairs_at(slope, 2, 2).count() < 28);
+    CHECK(pairs_at(Image<std::uint16_t>({5, 5}, kNodata), 2, 2).none());
+}
+
+TEST_CASE("the twin's ternary bits leave a band of noise")
+{
+    const auto image = pixels({{10, 12, 11, 8, kNodata}});
+    const auto bits = [&](int t) { return ternary_at(image, 0, 2, t).count(); };
+    CHECK(bits(0) == 5 * 3); // 10 and 8 below, 12 above, in five equal rows; nodata neither
+    CHECK(bits(1) == 5);     // 8 alone
+    CHECK(bits(3) == 0);
+    const auto pair =
+        make_level_pair(image, image, {0, 1000}, {0, 255}, Cost::ternary5x5, nullptr);
+    CHECK(matching_cost(pair, 0, 2, 0) == 5); // bands of 4 and of 1
+}
+
+TEST_CASE("the twin adds the difference of tones to a census, as far as 24")
+{
+    const auto left = pixels({{100, 107, 200}});
+    const auto right = pixels({{100, 100, 100}});
+    const auto pair = make_level_pair(left, right, {}, {}, Cost::census_ad, nullptr);
+    CHECK(matching_cost(pair, 0, 0, 0) == 0);
+    CHECK(matching_cost(pair, 0, 1, 0) == 2 * 10 + 3); // two columns of five are below 107
+    CHECK(matching_cost(pair, 0, 2, 0) == 2 * 10 + 12);
+    CHECK(matching_cost(pair, 0, 2, 3) == 29);
+}
+
+TEST_CASE("the twin's gradients are clipped, and leave out nodata")
+{
+    const auto image = pixels({{0, 1, 3, 60, kNodata, 60}});
+    const Image<std::uint8_t> tone = toned(image, {});
+    const auto at = [&](int col) { return gradient_at(image, tone, 0, col); };
+    CHECK(at(0) == 15 + 4 * 1);
+    CHECK(at(1) == 15 + 4 * 3);
+    CHECK(at(2) == 30);
+    CHECK(at(3) == 15); // beside nodata
+    CHECK(at(4) == 15);
+}
+
+TEST_CASE("the twin's sampling differences vanish within half a pixel")
+{
+    CHECK(sampling_difference({10, 8, 12}, {12, 10, 14}) == 0);
+    CHECK(sampling_difference({10, 10, 10}, {13, 12, 14}) == 2);
+    CHECK(sampling_difference({14, 14, 16}, {10, 9, 11}) == 3);
+    CHECK(sampling_difference({14, 10, 16}, {10, 9, 11}) == 0);
+}
+
+TEST_CASE("the twin adds up differences over nine pixels")
+{
+    Image<std::uint16_t> left({3, 3}, 100);
+    Image<std::uint16_t> right({3, 3}, 108);
+    const auto pair = make_level_pair(left, right, {}, {}, Cost::birchfield_tomasi, nullptr);
+    CHECK(matching_cost(pair, 1, 1, 0) == 9 * (8 / 4) / 4);
+    CHECK(matching_cost(pair, 1, 1, 1) == (6 * 2 + 3 * 13) / 4); // a column without counterpart
+    CHECK(matching_cost(pair, 1, 0, 1) == 29);
+    right(0, 0) = kNodata;
+    const auto holed = make_level_pair(left, right, {}, {}, Cost::birchfield_tomasi, nullptr);
+    CHECK(matching_cost(holed, 1, 1, 0) == (8 * 2 + 13) / 4);
+    CHECK(matching_cost(holed, 0, 1, 0) == (7 * 2 + 2 * 13 - 2 * 2 + 2 * 2) / 4);
+}
+
 TEST_CASE("the twin looks up cost hmi by the tones of both pixels")
 {
     HmiCosts table({256, 256}, 5);

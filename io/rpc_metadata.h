@@ -1,0 +1,49 @@
+#pragma once
+
+#include "io/raster_source.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace hsgm::io {
+
+/// A rational polynomial model as some file stores it, in the order of terms of RPC00B and
+/// with offsets that count **pixel centres from 0**: line 0, sample 0 is the centre of the
+/// first pixel. Latitude and longitude in degrees on WGS84, heights in metres above its
+/// ellipsoid, lines and samples in pixels.
+struct RpcMetadata {
+    double line_off = 0;
+    double samp_off = 0;
+    double lat_off = 0;
+    double long_off = 0;
+    double height_off = 0;
+    double line_scale = 1;
+    double samp_scale = 1;
+    double lat_scale = 1;
+    double long_scale = 1;
+    double height_scale = 1;
+    std::array<double, 20> line_num{};
+    std::array<double, 20> line_den{};
+    std::array<double, 20> samp_num{};
+    std::array<double, 20> samp_den{};
+    /// The model is that of a whole scene, of which an image may be a part: an image without a
+    /// map, whose geotransform says where in the scene it lies (.geom files of OTB).
+    bool of_whole_scene = false;
+    std::string origin; ///< for people: "left.tif" or "left.geom"
+
+    bool operator==(const RpcMetadata&) const = default;
+};
+
+/// The model that GDAL finds for an image: in the TIFF's own tag, in an .RPB or _RPC.TXT file
+/// beside it, in a DIMAP product. Nothing where there is none. Throws InputError for one that
+/// is incomplete.
+std::optional<RpcMetadata> stored_rpc(const RasterSource& image);
+
+/// The model of a file given by name: _RPC.TXT ("LINE_OFF: 12"), .geom of OSSIM or OTB,
+/// .RPB ("lineOffset = 12;") or DIMAP's RPC_*.XML, told apart by what they hold. The terms of
+/// an RPC00A model are put into the order of RPC00B; DIMAP's count from 1 becomes one from 0.
+/// Throws InputError for a file that is missing, unreadable, or lacks a value.
+RpcMetadata read_rpc_file(const std::string& path);
+
+} // namespace hsgm::io

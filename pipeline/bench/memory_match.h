@@ -1,0 +1,36 @@
+#pragma once
+
+#include "matcher/matcher.h"
+#include "matcher/refine.h"
+#include "pipeline/bench/bench_pair.h"
+
+namespace hsgm::bench {
+
+/// Where the time of a whole match goes, in seconds.
+struct StageSeconds {
+    double pyramid = 0;
+    double table = 0;   ///< cost `hmi` alone: learning its table
+    double coarse = 0;  ///< the coarsest level, solved whole
+    double windows = 0; ///< every finer level of every tile, right-view keys included
+    double second = 0;  ///< left-right check, reasons, median
+};
+
+/// A whole match: what came of it, and what it took.
+struct MemoryMatch {
+    matcher::Refined result;
+    matcher::MatchStatistics work; ///< without the level that `hmi` learns from
+    StageSeconds seconds;
+};
+
+/// Matches a pair from its pixels to its checked disparities without any file, on the
+/// threads of the caller's arena: what `hsgm match` computes, with the same bits. Tiles
+/// (0: one for the whole image) are matched one after the other.
+/// Throws std::invalid_argument where options or shape are impossible.
+MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& options,
+                            int tile_size_px);
+
+/// Upper bound of the memory that it takes, in bytes, with so many threads.
+std::int64_t memory_match_bytes(const matcher::PairShape& shape,
+                                const matcher::Options& options, int tile_size_px, int threads);
+
+} // namespace hsgm::bench

@@ -1,0 +1,70 @@
+#include "pipeline/stages/camera_stage.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+// Where in its scene an image begins: the corner of its first pixel is that of a pixel of
+// the scene, and so is its centre.
+geometry::ImagePoint first_pixel(const io::RasterSource& image, const std::string& rpc)
+{
+    const io::GeoReference geo = image.geo_reference();
+    if (!geo.transform || !geo.wkt.empty()) {
+        return {};
+    }
+    const auto& t = *geo.transform;
+    if (t[1] != 1 || t[2] != 0 || t[4] != 0 || t[5] != 1) {
+        throw io::InputError(fmt::format(
+            "{} is of a whole scene, but the geotransform of {} does not say which of its "
+            "pixels the image holds: expected steps of (1, 0) and (0, 1) px, found ({}, {}) "
+            "and ({}, {}). Give an RPC of the image itself.",
+            rpc, image.description(), t[1], t[4], t[2], t[5]));
+    }
+    return {t[0], t[3]};
+}
+
+} // namespace
+
+geometry::RpcModel to_model(const io::RpcMetadata& stored)
+{
+    geometry::RpcModel model;
+    model.line_off = stored.line_off;
+    model.samp_off = stored.samp_off;
+    model.lat_off_deg = stored.lat_off;
+    model.long_off_deg = stored.long_off;
+    model.height_off_m = stored.height_off;
+    model.line_scale = stored.line_scale;
+    model.samp_scale = stored.samp_scale;
+    model.lat_scale_deg = stored.lat_scale;
+    model.long_scale_deg = stored.long_scale;
+    model.height_scale_m = stored.height_scale;
+    model.line_num = stored.line_num;
+    model.line_den = stored.line_den;
+    model.samp_num = stored.samp_num;
+    model.samp_den = stored.samp_den;
+    return model;
+}
+
+geometry::RpcCamera open_camera(const io::RasterSource& image, const std::string& rpc_file)
+{
+    if (!rpc_file.empty()) {
+        const io::RpcMetadata stored = io::read_rpc_file(rpc_file);
+        const geometry::RpcModel model = to_model(stored);
+        return geometry::RpcCamera(
+            stored.of_whole_scene ? crop(model, first_pixel(image, rpc_file)) : model);
+    }
+    const auto stored = io::stored_rpc(image);
+    if (!stored) {
+        throw io::InputError(fmt::format(
+            "{} has no RPC: GDAL finds none in the file, nor in an .RPB, _RPC.TXT or DIMAP "
+            "file beside it. Name one with `rpc:` (_RPC.TXT, .RPB, .geom or DIMAP XML).",
+            image.description()));
+    }
+    return geometry::RpcCamera(to_model(*stored));
+}
+
+} // namespace hsgm::pipeline
