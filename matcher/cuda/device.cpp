@@ -1,5 +1,6 @@
 #include "matcher/cuda/device.h"
 
+#include "matcher/cuda/features.h"
 #include "matcher/cuda/tile_matcher.h"
 
 #include <algorithm>
@@ -81,9 +82,13 @@ Devices find_devices()
 
 std::string refusal(const Matcher& matcher, const DeviceInfo&)
 {
-    return matcher.plan().windowed_levels() == 0
-               ? "a match in one piece (mode sgm, or one level) is left to the processor"
-               : "";
+    if (matcher.plan().windowed_levels() == 0) {
+        return "a match in one piece (mode sgm, or one level) is left to the processor";
+    }
+    const Cost cost = matcher.options().cost;
+    return has_cost_rule(cost)
+               ? ""
+               : "cost " + std::string(name(cost)) + " is left to the processor";
 }
 
 std::int64_t shared_bytes(const Matcher& matcher)

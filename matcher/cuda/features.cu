@@ -69,33 +69,60 @@ __global__ void low_texture(Plane<const std::uint16_t> pixels, Plane<const std::
     }
 }
 
-// One bit for each neighbour, set where it is darker than the centre: 31 in `y`, then `x`.
-__global__ void census(Plane<const std::uint16_t> pixels, Area image, int radius_rows,
-                       int radius_cols, Plane<Feature> result)
+// What a census looks at.
+struct CensusShape {
+    int radius_rows;
+    int radius_cols;
+    bool ternary; ///< two bits for each neighbour: below and above a band
+    int band;
+    bool with_tone; ///< the tone beside the bits, in `y`
+};
+
+// Bits in order, 32 in `x`, then those in `y`.
+struct Bits {
+    unsigned low = 0;
+    unsigned high = 0;
+    int count = 0;
+
+    __device__ void add(bool bit)
+    {
+        if (count < 32) {
+            low |= (bit ? 1U : 0U) << count;
+        } else {
+            high |= (bit ? 1U : 0U) << (count - 32);
+        }
+        ++count;
+    }
+};
+
+__device__ void add_neighbour(Bits& bits, const CensusShape& shape, int neighbour, int centre)
+{
+    const bool valid = is_valid(static_cast<std::uint16_t>(neighbour));
+    bits.add(valid && neighbour + shape.band < centre);
+    if (shape.ternary) {
+        bits.add(valid && centre + shape.band < neighbour);
+    }
+}
+
+__global__ void census(Plane<const std::uint16_t> pixels, Area image, CensusShape shape,
+                       Tone tone, Plane<Feature> result)
 {
     for (std::size_t i = first_pixel(); i < result.area.pixels(); i += pixel_step()) {
         const Pixel p = pixel_of(result.area, i);
         const std::uint16_t centre = pixels.at(p.row, p.col);
-        unsigned low = 0;
-        unsigned high = 0;
-        int n = 0;
-        for (int dr = -radius_rows; dr <= radius_rows; ++dr) {
+        Bits bits;
+        for (int dr = -shape.radius_rows; dr <= shape.radius_rows; ++dr) {
             const int row = clamped(p.row + dr, 0, image.rows - 1);
-            for (int dc = -radius_cols; dc <= radius_cols; ++dc) {
-                if (dr == 0 && dc == 0) {
-                    continue;
-                }
+            for (int dc = -shape.radius_cols; dc <= shape.radius_cols; ++dc) {
                 const int col = clamped(p.col + dc, 0, image.cols - 1);
-                const unsigned bit = pixels.at(row, col) < centre ? 1 : 0;
-                if (n < 32) {
-                    low |= bit << n;
-                } else {
-                    high |= bit << (n - 32);
+                if (dr != 0 || dc != 0) {
+                    add_neighbour(bits, shape, pixels.at(row, col), centre);
                 }
-                ++n;
             }
         }
-        result.data[i] = make_uint2(low, high | (is_valid(centre) ? kValidFeature : 0U));
+        const unsigned beside = shape.with_tone ? tone(centre) : 0U;
+        result.data[i] =
+            make_uint2(bits.low, bits.high | beside | (is_valid(centre) ? kValidFeature : 0U));
     }
 }
 
@@ -144,8 +171,30 @@ cudaError_t compute_features(Plane<const std::uint16_t> pixels, Area image, Cost
                       tone, result);
     }
     const CostTraits of_cost = traits(cost);
-    return launch(features::census, blocks, features::kThreads, 0, stream, pixels, image,
-                  of_cost.radius_rows, of_cost.radius_cols, result);
+    features::CensusShape shape{of_cost.radius_rows, of_cost.radius_cols, false, 0, false};
+    shape.ternary = cost == Cost::ternary5x5;
+    shape.band = shape.ternary ? (tone.hi - tone.lo + 127) / 255 : 0;
+    shape.with_tone = cost == Cost::census_ad;
+    return launch(features::census, blocks, features::kThreads, 0, stream, pixels, image, shape,
+                  tone, result);
+}
+
+bool has_cost_rule(Cost cost)
+{
+    switch (cost) {
+    case Cost::census5x5:
+    case Cost::census7x7:
+    case Cost::census9x7:
+    case Cost::ternary5x5:
+    case Cost::census_ad:
+    case Cost::hmi:
+        return true;
+    case Cost::pairs5x5:
+    case Cost::pairs_bt:
+    case Cost::birchfield_tomasi:
+        break;
+    }
+    return false;
 }
 
 CostRule cost_rule(Cost cost, const std::uint8_t* table)
@@ -158,11 +207,19 @@ CostRule cost_rule(Cost cost, const std::uint8_t* table)
         return rule;
     case Cost::census7x7:
     case Cost::census9x7:
+    case Cost::ternary5x5:
+        return rule;
+    case Cost::census_ad:
+        rule.kind = CostKind::census_tone;
         return rule;
     case Cost::hmi:
         rule.kind = CostKind::table;
         rule.table = table;
         return rule;
+    case Cost::pairs5x5:
+    case Cost::pairs_bt:
+    case Cost::birchfield_tomasi:
+        break;
     }
     throw std::logic_error("no rule for this cost on CUDA devices");
 }

@@ -20,6 +20,9 @@ cudaError_t compute_low_texture(Plane<const std::uint16_t> pixels,
 cudaError_t compute_features(Plane<const std::uint16_t> pixels, Area image, Cost cost,
                              Tone tone, Plane<Feature> result, cudaStream_t stream);
 
+/// Whether there is a rule for this cost on devices.
+bool has_cost_rule(Cost cost);
+
 /// How features become the costs of `cost`; `table` on the device, for HMI.
 CostRule cost_rule(Cost cost, const std::uint8_t* table);
 

@@ -167,7 +167,16 @@ std::int64_t upload_bytes(const Matcher& matcher, const Rect& core)
 
 std::int64_t download_bytes(const Matcher& matcher, const Rect& core)
 {
-    return core.area() * (4 + 2 + 1) + keys_rect(matcher, core).area() * 4;
+    std::int64_t windows = 0;
+    const auto support = matcher.support(core);
+    const int window_px = matcher.options().window_px;
+    for (int level = 0; level < matcher.plan().windowed_levels(); ++level) {
+        const Rect& all = support[level_index(level)].windows;
+        windows += std::int64_t{tiling::ceil_div(all.rows, window_px)} *
+                   tiling::ceil_div(all.cols, window_px);
+    }
+    return core.area() * (4 + 2 + 1) + keys_rect(matcher, core).area() * 4 +
+           windows * static_cast<std::int64_t>(sizeof(Window));
 }
 
 Rect keys_rect(const Matcher& matcher, const Rect& core)

@@ -11,7 +11,11 @@ namespace hsgm::matcher::cuda {
 using Feature = uint2;
 constexpr unsigned kValidFeature = 0x80000000U;
 
-enum class CostKind { census, table };
+enum class CostKind {
+    census,      ///< bits that differ
+    census_tone, ///< bits of `x` that differ, and the difference of tones in `y`
+    table,       ///< of tones, in `x`
+};
 
 /// How the features of two valid pixels become a cost.
 struct CostRule {

@@ -20,6 +20,23 @@ struct CensusCost {
     }
 };
 
+/// Census bits and the difference of tones: census_ad.
+struct CensusToneCost {
+    unsigned most;
+
+    __device__ unsigned one(Feature left, Feature right) const
+    {
+        const int a = static_cast<int>(left.y & 0xFFU) - static_cast<int>(right.y & 0xFFU);
+        const int bits = __popc(left.x ^ right.x);
+        return least_of(static_cast<unsigned>(2 * bits + least_of(a < 0 ? -a : a, 24) / 2),
+                        most);
+    }
+    __device__ unsigned operator()(Feature left, Feature low, Feature high) const
+    {
+        return one(left, low) | one(left, high) << 16;
+    }
+};
+
 /// A table by the tones of both pixels: HMI.
 struct TableCost {
     const std::uint8_t* table;
@@ -52,6 +69,8 @@ public:
         const bool valid = __syncthreads_and(sees_valid_pixels() ? 1 : 0) != 0;
         if (rule.kind == CostKind::table) {
             fill_with<false>(TableCost{rule.table});
+        } else if (rule.kind == CostKind::census_tone) {
+            fill_with<false>(CensusToneCost{static_cast<unsigned>(rule.most)});
         } else if (valid) {
             fill_with<true>(census);
         } else {

@@ -2,6 +2,7 @@
 
 #include "matcher/cuda/features.h"
 #include "matcher/cuda/window_ranges.h"
+#include "matcher/host/directions.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
@@ -30,6 +31,26 @@ std::int64_t tile_bytes(const Matcher& matcher, const DeviceInfo& device, const 
     Arena arena;
     lay_out_tile<Cell>(arena, matcher, device, core);
     return static_cast<std::int64_t>(arena.used());
+}
+
+template <typename Cell>
+std::size_t windows_of(const TileMemory<Cell>& memory)
+{
+    std::size_t count = 0;
+    for (const LevelMemory<Cell>& m : memory.levels) {
+        count += static_cast<std::size_t>(m.window_count);
+    }
+    return count;
+}
+
+// The pixels that paths of direction `r` run over: see path_region in window_frame.cuh.
+Rect run_over(const Rect& core, host::Direction r, int halo_px, const Rect& image)
+{
+    return intersect(tiling::rect_between(core.row - (r.row > 0 ? halo_px : 0),
+                                          core.col - (r.col > 0 ? halo_px : 0),
+                                          core.row_end() + (r.row < 0 ? halo_px : 0),
+                                          core.col_end() + (r.col < 0 ? halo_px : 0)),
+                     image);
 }
 
 template <typename T>
@@ -199,12 +220,18 @@ TileMatch TileMatcher<Cell>::download(const TileMemory<Cell>& memory, const Rect
         std::size_t bytes;
     };
     const auto pixels = static_cast<std::size_t>(core.area());
-    const Part parts[] = {
+    std::vector<Window> windows(windows_of(memory));
+    std::vector<Part> parts{
         {match.disparity_q8.data(), memory.tile.disparity_q8, pixels * 4},
         {match.confidence.data(), memory.tile.confidence, pixels},
         {match.reasons.data(), memory.tile.reasons, pixels * 2},
         {match.right_keys.pixels.data(), memory.tile.keys, memory.tile.keys_area.pixels() * 4},
     };
+    Window* to = windows.data();
+    for (const LevelMemory<Cell>& m : memory.levels) {
+        parts.push_back({to, m.windows, std::size_t(m.window_count) * sizeof(Window)});
+        to += m.window_count;
+    }
     unsigned char* at = down_.data();
     for (const Part& part : parts) {
         if (part.bytes > 0) {
@@ -222,7 +249,32 @@ TileMatch TileMatcher<Cell>::download(const TileMemory<Cell>& memory, const Rect
         }
         at += part.bytes;
     }
+    match.work = work_of(memory, windows.data());
     return match;
+}
+
+// As the host counts it; the ranges of the windows are known only now.
+template <typename Cell>
+MatchStatistics TileMatcher<Cell>::work_of(const TileMemory<Cell>& memory,
+                                           const Window* windows) const
+{
+    const Options& options = matcher_.options();
+    MatchStatistics work;
+    for (std::size_t k = 0; k < memory.levels.size(); ++k) {
+        const Rect image = rect_of(matcher_.plan().left_sizes[k]);
+        for (int i = 0; i < memory.levels[k].window_count; ++i, ++windows) {
+            const Rect core{windows->core.row, windows->core.col, windows->core.rows,
+                            windows->core.cols};
+            ++work.windows;
+            work.cells +=
+                intersect(expand(core, options.halo_px), image).area() * windows->count;
+            for (const host::Direction& r : host::directions(options.paths)) {
+                work.path_steps +=
+                    run_over(core, r, options.halo_px, image).area() * windows->count;
+            }
+        }
+    }
+    return work;
 }
 
 template class TileMatcher<std::uint8_t>;

@@ -19,6 +19,7 @@ private:
     void solve_level(const TileMemory<Cell>& memory, int level);
     SolveJob<Cell> job_of(const TileMemory<Cell>& memory, int level) const;
     TileMatch download(const TileMemory<Cell>& memory, const tiling::Rect& core);
+    MatchStatistics work_of(const TileMemory<Cell>& memory, const Window* windows) const;
 
     const Matcher& matcher_;
     std::shared_ptr<const CoarseOnDevice<Cell>> coarse_;

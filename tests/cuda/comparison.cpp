@@ -102,9 +102,10 @@ std::string difference(const matcher::TileMatch& host, const matcher::TileMatch&
             return text;
         }
     }
-    return host.right_keys.rect == device.right_keys.rect && host.core == device.core
-               ? ""
-               : "the places differ";
+    if (!(host.right_keys.rect == device.right_keys.rect && host.core == device.core)) {
+        return "the places differ";
+    }
+    return host.work == device.work ? "" : "the work counted differs";
 }
 
 Outcome compare_tiles(const reference::Case& c, const Setting& setting)

@@ -22,6 +22,9 @@ constexpr int kShare = 1;
 void compare_with_device(const Theme& theme, std::uint64_t first, int cases)
 {
     cases = std::max(1, cases / kShare);
+    if (const char* count = std::getenv("HSGM_REFERENCE_CASES")) {
+        cases = std::atoi(count);
+    }
     if (const char* seed = std::getenv("HSGM_REFERENCE_SEED")) {
         first = std::strtoull(seed, nullptr, 10);
         cases = 1;
