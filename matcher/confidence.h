@@ -14,12 +14,11 @@ constexpr int kWideSupport_q8 = 384;
 /// What one supporting neighbour is worth, beside the margins of 25 pixels of 0..255 each.
 constexpr int kSupportWeight = 200;
 
-/// Confidence by score / 256: the share of pixels within 1 px of the truth, in 1/255
+/// Confidence by score / 512: the share of pixels within 1 px of the truth, in 1/255
 /// (docs/algorithm.md, section 6, step 7; docs/benchmarks.md says what it was measured on).
 /// Rises strictly, so that the score can be told from the confidence.
-constexpr std::array<std::uint8_t, 50> kConfidenceOfScore{
-    2,   4,   8,   12,  17,  23,  29,  36,  43,  50,  59,  68,  78,  88,  98,  109, 119,
-    129, 138, 147, 156, 164, 172, 179, 185, 191, 197, 202, 207, 211, 215, 219, 222, 225,
-    228, 230, 232, 234, 236, 238, 240, 242, 244, 246, 248, 250, 251, 252, 253, 254};
+constexpr std::array<std::uint8_t, 25> kConfidenceOfScore{
+    60,  71,  85,  102, 121, 140, 157, 174, 187, 199, 211, 222, 230,
+    236, 241, 244, 247, 248, 249, 250, 251, 252, 253, 254, 255};
 
 } // namespace hsgm::matcher

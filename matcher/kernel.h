@@ -14,10 +14,14 @@
 
 namespace hsgm::matcher {
 
-/// Largest addition of the gated prior to a matching cost.
-constexpr int kPriorMax = 4;
 /// The coarser level's normalised sums are capped at this before they become the prior.
 constexpr int kPriorCap = 16;
+/// The prior is divided by two to the power of this before it joins a matching cost...
+constexpr int kPriorShift = 2;
+/// ... and where there is texture by this.
+constexpr int kPriorShiftTextured = 4;
+/// Largest addition of the prior to a matching cost.
+constexpr int kPriorMax = kPriorCap >> kPriorShift;
 /// A 7 x 7 neighbourhood whose tones span less than this counts as low texture.
 constexpr int kTextureGate = 7;
 /// How much dearer than P2 a coarse disparity is that was never searched.
@@ -25,10 +29,11 @@ constexpr int kUnsearchedMargin = 24;
 /// Right-view key of a right pixel that no left pixel met.
 constexpr std::uint32_t kNoKey = 0xFFFFFFFFU;
 
-/// P2 by the tone difference `a` along the path, gradient rule: p2 at 0, falling to p1.
-HSGM_HOST_DEVICE constexpr int p2_gradient(int p1, int p2, int a)
+/// P2 by the tone difference `a` along the path, gradient rule: p2 at 0, falling to p1,
+/// half-way there at `half`.
+HSGM_HOST_DEVICE constexpr int p2_gradient(int p1, int p2, int half, int a)
 {
-    return p1 + (p2 - p1) * 5 / (5 + a);
+    return p1 + (p2 - p1) * half / (half + a);
 }
 
 /// P2 by eq. 3 of Won and Jung.

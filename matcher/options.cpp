@@ -86,6 +86,7 @@ void Options::validate() const
             "an even number from 0 to the window size");
     require(p2 >= 0 && p2 <= 4000, "p2", p2, "0..4000");
     require(p1 >= 0 && p1 <= p2, "p1", p1, "0..p2");
+    require(p2_half_tone >= 1 && p2_half_tone <= 255, "p2_half_tone", p2_half_tone, "1..255");
     require(left_right_px >= -1 && left_right_px <= 64, "left_right_px", left_right_px,
             "off or 0..64");
     require(speckle_px == 0 || (speckle_px >= 2 && speckle_px <= 500), "speckle_px", speckle_px,
@@ -96,6 +97,7 @@ void Options::validate() const
             "0..255");
     require(fill_px >= 1 && fill_px <= 256, "fill_px", fill_px, "1..256");
     require(median == 1 || median == 3 || median == 5, "median", median, "1 (off), 3 or 5");
+    require(smooth == 1 || smooth == 3 || smooth == 5, "smooth", smooth, "1 (off), 3 or 5");
 }
 
 Options Options::resolved() const

@@ -52,14 +52,16 @@ struct Options {
     int halo_px = 8;          ///< even, 0..window; in mode `local` this is the overlap
     int p1 = 24;              ///< penalty of a disparity step of one, 0..p2
     int p2 = 192;             ///< penalty of a larger step where the image is flat, up to 4000
+    int p2_half_tone = 5;     ///< tone step at which p2 has fallen half-way to p1, 1..255
     bool prior = true;        ///< in flat areas, add a little of the coarser level's sums
     bool prune = true;        ///< search only round the coarser level's disparities
     int left_right_px = 1;    ///< tolerance of the left-right check, 0..64; -1 = off
-    int speckle_px = 50;      ///< segments of fewer pixels lose their values, 2..500; 0 = off
+    int speckle_px = 25;      ///< segments of fewer pixels lose their values, 2..500; 0 = off
     int speckle_range_px = 1; ///< neighbours of one segment differ by this at most, 1..64
     Subpixel subpixel = Subpixel::census;
-    int min_confidence = 0; ///< values trusted less are taken away, 0..255
-    int median = 3;         ///< side of the median filter: 3 or 5; 1 = off
+    int min_confidence = 150; ///< values trusted less are taken away, 0..255
+    int median = 3;           ///< side of the median filter: 3 or 5; 1 = off
+    int smooth = 5;           ///< side of the mean over one surface: 3 or 5; 1 = off
     Fill fill = Fill::none;
     int fill_px = 32; ///< how far a hole looks for values to close it, 1..256
 

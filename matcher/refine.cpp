@@ -6,6 +6,7 @@
 #include "matcher/host/finish.h"
 #include "matcher/host/left_right.h"
 #include "matcher/host/median_filter.h"
+#include "matcher/host/smooth.h"
 #include "matcher/host/speckle.h"
 #include "matcher/host/subpixel.h"
 #include "matcher/reasons.h"
@@ -28,7 +29,8 @@ constexpr std::uint8_t kInterpolatedConfidence = 1;
 
 // The pixels whose result each step must give, so that the next one has all it reads.
 struct Reach {
-    Rect medians;     // read where holes are filled
+    Rect means;       // read where holes are filled
+    Rect medians;     // read where means are taken
     Rect confidences; // of values that medians are taken from
     Rect fractions;
     Rect speckles;
@@ -39,7 +41,8 @@ struct Reach {
         const auto grown = [&shape](const Rect& rect, int px) {
             return intersect(expand(rect, px), rect_of(shape.left));
         };
-        medians = grown(core, options.fill == Fill::none ? 0 : options.fill_px);
+        means = grown(core, options.fill == Fill::none ? 0 : options.fill_px);
+        medians = grown(means, options.smooth / 2);
         confidences = grown(medians, options.median / 2);
         fractions = grown(confidences, kConfidenceReach);
         const bool census = options.subpixel == Subpixel::census;
@@ -109,8 +112,8 @@ void remove_uncertain(int min_confidence, const Patch<std::uint8_t>& confidences
     }
 }
 
-Patch<std::int32_t> smoothed(const DisparityPlane& disparities, const Options& options,
-                             const Rect& wanted)
+Patch<std::int32_t> medians_of(const DisparityPlane& disparities, const Options& options,
+                               const Rect& wanted)
 {
     if (options.median > 1) {
         return host::medians(disparities, options.median, wanted);
@@ -177,7 +180,10 @@ Refined refine(const Rect& core, const RefineInput& input, const PairShape& shap
     if (options.min_confidence > 0) {
         remove_uncertain(options.min_confidence, confidences, disparities, reasons);
     }
-    Patch<std::int32_t> values = smoothed(disparities, options, reach.medians);
+    Patch<std::int32_t> values = medians_of(disparities, options, reach.medians);
+    if (options.smooth > 1) {
+        values = host::smoothed(values, options.smooth, reach.means);
+    }
     if (options.fill != Fill::none) {
         values =
             host::filled(values, options.fill_px, options.fill == Fill::all, core, reasons);
@@ -196,9 +202,11 @@ std::int64_t refine_bytes(const Rect& core, const PairShape& shape, const Option
                               (support.left_image.area() + support.right_image.area()) * 2;
     const std::int64_t copied = support.first_pass.area() * 2; // the reasons
     std::int64_t work = DisparityPlane::bytes(reach.first_pass.size());
-    const std::int64_t later = DisparityPlane::bytes(reach.fractions.size()) +
-                               reach.confidences.area() + 2 * 4 * reach.medians.area() +
-                               host::subpixel_bytes(reach.fractions, shape);
+    const std::int64_t later =
+        DisparityPlane::bytes(reach.fractions.size()) + reach.confidences.area() +
+        2 * 4 * reach.medians.area() +
+        (options.smooth > 1 ? host::smooth_bytes(reach.medians.size()) : 0) +
+        host::subpixel_bytes(reach.fractions, shape);
     const std::int64_t speckles =
         options.speckle_px > 0 ? host::speckle_bytes(reach.first_pass.size()) : 0;
     work += std::max(speckles, later);

@@ -1,6 +1,7 @@
 #include "pipeline/configuration.h"
 
 #include "io/error.h"
+#include "matcher/profile.h"
 #include "pipeline/budget.h"
 #include "pipeline/device_plan.h"
 #include "pipeline/error.h"
@@ -17,11 +18,13 @@ using io::ConfigSection;
 
 matcher::Options read_matcher(ConfigSection section)
 {
-    matcher::Options o;
+    const std::string profile =
+        section.choice("profile", "satellite", {"satellite", "aerial", "close"});
+    matcher::Options o = options_of(matcher::profile_from_name(profile));
     o.mode = matcher::mode_from_name(
         section.choice("mode", "hsgm", {"hsgm", "hsgm-paper", "sgm", "local"}));
     o.cost = matcher::cost_from_name(
-        section.choice("cost", "census7x7",
+        section.choice("cost", std::string(name(o.cost)),
                        {"census5x5", "census7x7", "census9x7", "pairs5x5", "ternary5x5",
                         "census_ad", "pairs_bt", "birchfield_tomasi", "hmi"}));
     o.paths =
@@ -31,6 +34,7 @@ matcher::Options read_matcher(ConfigSection section)
     o.halo_px = section.integer("halo", o.halo_px, 0, 1024);
     o.p1 = section.integer("p1", o.p1, 0, 4000);
     o.p2 = section.integer("p2", o.p2, 0, 4000);
+    o.p2_half_tone = section.integer("p2_half_tone", o.p2_half_tone, 1, 255);
     o.prior = section.flag("prior", o.prior);
     o.prune = section.flag("prune", o.prune);
     o.left_right_px =
@@ -41,6 +45,7 @@ matcher::Options read_matcher(ConfigSection section)
         matcher::subpixel_from_name(section.choice("subpixel", "census", {"census", "sums"}));
     o.min_confidence = section.integer("min_confidence", o.min_confidence, 0, 255);
     o.median = section.integer_or("median", "off", o.median, 1, 5).value_or(1);
+    o.smooth = section.integer_or("smooth", "off", o.smooth, 1, 5).value_or(1);
     o.fill =
         matcher::fill_from_name(section.choice("fill", "none", {"none", "occluded", "all"}));
     o.fill_px = section.integer("fill_px", o.fill_px, 1, 256);

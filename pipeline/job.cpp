@@ -14,7 +14,8 @@ std::map<std::string, std::string> provenance(const Job& job)
         {"HSGM_PATHS", std::to_string(m.paths)},
         {"HSGM_LEVELS", m.levels == 0 ? "auto" : std::to_string(m.levels)},
         {"HSGM_WINDOW", fmt::format("{} px, halo {} px", m.window_px, m.halo_px)},
-        {"HSGM_PENALTIES", fmt::format("p1 {}, p2 {}", m.p1, m.p2)},
+        {"HSGM_PENALTIES",
+         fmt::format("p1 {}, p2 {}, half at tone step {}", m.p1, m.p2, m.p2_half_tone)},
         {"HSGM_PRIOR", m.prior ? "on" : "off"},
         {"HSGM_PRUNE", m.prune ? "on" : "off"},
         {"HSGM_LEFT_RIGHT",
@@ -25,6 +26,7 @@ std::map<std::string, std::string> provenance(const Job& job)
         {"HSGM_SUBPIXEL", std::string(name(m.subpixel))},
         {"HSGM_MIN_CONFIDENCE", std::to_string(m.min_confidence)},
         {"HSGM_MEDIAN", std::to_string(m.median)},
+        {"HSGM_SMOOTH", std::to_string(m.smooth)},
         {"HSGM_FILL", m.fill == matcher::Fill::none
                           ? "none"
                           : fmt::format("{}, up to {} px", name(m.fill), m.fill_px)},

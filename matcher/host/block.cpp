@@ -71,8 +71,9 @@ Penalties penalties(const Options& options)
     p.p1 = options.p1;
     for (int a = 0; a < 256; ++a) {
         p.p2[std::size_t(a)] = static_cast<std::uint16_t>(
-            options.mode == Mode::hsgm_paper ? p2_equation3(options.p1, options.p2, a)
-                                             : p2_gradient(options.p1, options.p2, a));
+            options.mode == Mode::hsgm_paper
+                ? p2_equation3(options.p1, options.p2, a)
+                : p2_gradient(options.p1, options.p2, options.p2_half_tone, a));
     }
     return p;
 }

@@ -170,7 +170,7 @@ Patch<std::uint8_t> confidences(const DisparityPlane& disparities,
         const std::int32_t* values = at(0);
         std::uint8_t* out = result.pixels.row(row - wanted.row);
         for (int i = 0; i < wanted.cols; ++i) {
-            const auto score = static_cast<std::size_t>(scores[std::size_t(i)] >> 8);
+            const auto score = static_cast<std::size_t>(scores[std::size_t(i)] >> 9);
             out[i] = values[i] == kHole ? std::uint8_t{0} : kConfidenceOfScore[score];
         }
     }

@@ -116,7 +116,7 @@ struct AtMost {
     }
 };
 
-// Twice the bits, and half the difference of tones as far as that goes.
+// Twice the bits, and half the difference of tones capped at 24.
 class WithTones {
 public:
     WithTones(const CostRow&, const std::uint8_t* left, const std::uint8_t* right)

@@ -131,19 +131,20 @@ void add_prior_row(const LevelFeatures& features, const LevelResult<L>& coarser,
                    CostWorkspace& workspace)
 {
     const tiling::Rect& rect = volume.rect;
-    const auto of_flat = [&](int col) {
-        return col >= rect.col && col < rect.col_end() && features.low_texture.at(row, col) != 0
-                   ? costs + std::ptrdiff_t{col - rect.col} * volume.stride
-                   : nullptr;
-    };
-    // Two columns share one coarse pixel.
-    for (int col = rect.col / 2 * 2; col < rect.col_end(); col += 2) {
-        std::uint8_t* const pixels[2] = {of_flat(col), of_flat(col + 1)};
-        if (pixels[0] != nullptr || pixels[1] != nullptr) {
-            const auto& block = coarser.block_at(row / 2, col / 2);
-            add_prior({block.prior_at(row / 2, col / 2), block.range, volume.range},
-                      volume.stride, pixels, workspace.prior);
-        }
+    for (int col = rect.col; col < rect.col_end();) {
+        const auto& block = coarser.block_at(row / 2, col / 2);
+        PriorRun run;
+        run.col = col;
+        run.cols = std::min(rect.col_end(), 2 * block.core.col_end()) - col;
+        run.low_texture = &features.low_texture.at(row, col);
+        run.fine = volume.range;
+        run.coarse = block.range;
+        run.values = block.prior_at(row / 2, col / 2);
+        run.pitch = block.stride;
+        run.end = block.prior.data() + block.prior.size();
+        add_prior(run, costs + std::ptrdiff_t{col - rect.col} * volume.stride, volume.stride,
+                  workspace.prior);
+        col += run.cols;
     }
 }
 

@@ -33,7 +33,7 @@ void matching_cost_row(const LevelFeatures& features, const PairTraits& pair, Co
                        const CostVolume& volume, int row, std::uint8_t* costs,
                        CostWorkspace& workspace);
 
-/// Adds the gated prior to a row of costs.
+/// Adds the prior to a row of costs.
 template <typename L>
 void add_prior_row(const LevelFeatures& features, const LevelResult<L>& coarser,
                    const CostVolume& volume, int row, std::uint8_t* costs,

@@ -13,7 +13,8 @@ PenaltyMaps::PenaltyMaps(const tiling::Patch<std::uint8_t>& left_tone, const til
 {
     std::array<std::uint8_t, 256> p2{};
     for (int a = 0; a < 256; ++a) {
-        p2[std::size_t(a)] = static_cast<std::uint8_t>(p2_gradient(options.p1, options.p2, a));
+        p2[std::size_t(a)] = static_cast<std::uint8_t>(
+            p2_gradient(options.p1, options.p2, options.p2_half_tone, a));
     }
     constexpr std::array<Direction, 4> kAxes{{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
     for (std::size_t i = 0; i < kAxes.size(); ++i) {

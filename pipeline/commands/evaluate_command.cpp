@@ -1,6 +1,7 @@
 #include "pipeline/commands/evaluate_command.h"
 
 #include "io/error.h"
+#include "pipeline/commands/confidence_report.h"
 #include "pipeline/stages/evaluate_stage.h"
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,9 +28,13 @@ constexpr const char* kDisparityHelp = R"(Examples:
   hsgm evaluate disparity result.tif disp_left_x4.png --scale 4 --thresholds 1,2
   hsgm evaluate disparity result.tif left.pfm --truth-right right.pfm
   hsgm evaluate disparity result.tif truth.tif --nonoccluded zbuffer --json
+  hsgm evaluate disparity result.tif truth.tif --confidence result.confidence.tif
 
 A pixel is bad where it has no value, or where |d - truth| is above the threshold. Pixels
-without truth, and those that the mask or the search for occlusions leaves out, do not count.)";
+without truth, and those that the mask or the search for occlusions leaves out, do not count.
+
+With --confidence, a second table tells how errors go away with the least confident pixels,
+and a third whether confidence / 255 is the share of pixels within --confidence-px.)";
 
 constexpr const char* kSeamsHelp = R"(Examples:
   hsgm evaluate seams result.tif --window 64
@@ -44,6 +50,7 @@ struct Options {
     std::string truth_nodata;
     std::string nonoccluded;
     std::vector<double> thresholds_px{0.5, 1, 2, 4};
+    double confidence_px = 1;
     int window_px = 0;
     int tile_px = 0;
     bool json = false;
@@ -76,7 +83,7 @@ void print(const ordered_json& json)
     fmt::print("{}\n", json.dump(2));
 }
 
-void print_score_as_json(const DisparityScore& s)
+ordered_json score_json(const DisparityScore& s)
 {
     ordered_json bad = ordered_json::array();
     for (const evaluate::BadPixels& b : s.bad) {
@@ -84,15 +91,15 @@ void print_score_as_json(const DisparityScore& s)
                        {"bad_percent", b.bad_percent},
                        {"bad_answered_percent", b.bad_answered_percent}});
     }
-    print({{"evaluated_pixels", s.evaluated},
-           {"answered_pixels", s.answered},
-           {"density_percent", s.density_percent},
-           {"bad", bad},
-           {"mean_error_px", s.mean_error_px},
-           {"mean_absolute_error_px", s.mean_absolute_error_px},
-           {"rmse_px", s.rmse_px},
-           {"median_error_px", s.median_error_px},
-           {"nmad_px", s.nmad_px}});
+    return {{"evaluated_pixels", s.evaluated},
+            {"answered_pixels", s.answered},
+            {"density_percent", s.density_percent},
+            {"bad", bad},
+            {"mean_error_px", s.mean_error_px},
+            {"mean_absolute_error_px", s.mean_absolute_error_px},
+            {"rmse_px", s.rmse_px},
+            {"median_error_px", s.median_error_px},
+            {"nmad_px", s.nmad_px}};
 }
 
 void print_score(const DisparityScore& s)
@@ -169,7 +176,22 @@ void run_disparity(const Options& options)
         throw io::InputError("no pixel of " + options.inputs.truth +
                              " has a truth that counts; check its nodata value and the mask");
     }
-    options.json ? print_score_as_json(score) : print_score(score);
+    std::optional<evaluate::ConfidenceScore> confidence;
+    if (!options.inputs.confidence.empty()) {
+        confidence = score_confidence(inputs_of(options), options.confidence_px);
+    }
+    if (options.json) {
+        ordered_json json = score_json(score);
+        if (confidence) {
+            json["confidence"] = confidence_json(*confidence);
+        }
+        print(json);
+        return;
+    }
+    print_score(score);
+    if (confidence) {
+        print_confidence(*confidence);
+    }
 }
 
 // What both commands know about their rasters.
@@ -213,6 +235,12 @@ CLI::App* add_evaluate_command(CLI::App& app)
     disparity->add_option("TRUTH", d->inputs.truth, "true disparity")->required();
     disparity->add_option("--thresholds", d->thresholds_px, "in pixels, for example 0.5,1,2,4")
         ->delimiter(',')
+        ->capture_default_str();
+    disparity->add_option("--confidence", d->inputs.confidence,
+                          "raster of the map's confidence, 0 to 255: tells what it is worth");
+    disparity
+        ->add_option("--confidence-px", d->confidence_px,
+                     "the error above which a pixel is bad for that")
         ->capture_default_str();
     add_raster_options(*disparity, *d);
     disparity->callback([d] { run_disparity(*d); });

@@ -11,6 +11,7 @@ void Knobs::apply(io::ConfigDocument& document) const
             document.set(key, value);
         }
     };
+    set("matcher.profile", profile);
     set("run.tile_size", tile_size);
     set("run.threads", threads);
     set("run.memory", memory);
@@ -22,6 +23,9 @@ void Knobs::apply(io::ConfigDocument& document) const
 
 void add_knobs(CLI::App& command, Knobs& knobs)
 {
+    command.add_option("--profile", knobs.profile,
+                       "defaults for a kind of scene: satellite, aerial or close (default "
+                       "satellite)");
     command.add_option("--tile-size", knobs.tile_size,
                        "side of a tile in px, 0 = untiled (default: fits the memory)");
     command.add_option("--threads", knobs.threads, "threads to use (default: all processors)");

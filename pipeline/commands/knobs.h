@@ -13,6 +13,7 @@ namespace hsgm::pipeline {
 /// The options that `run`, `match` and `plan` share. Each stands for a key of the
 /// configuration and overrides it, as `--set` does for any key.
 struct Knobs {
+    std::string profile;
     std::string tile_size;
     std::string threads;
     std::string memory;

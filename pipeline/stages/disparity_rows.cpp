@@ -78,13 +78,16 @@ struct Rasters {
     OptionalStrips truth;
     OptionalStrips truth_right;
     OptionalStrips mask;
+    OptionalStrips confidence;
 
     explicit Rasters(const DisparityInputs& inputs)
         : test(open(inputs.test, inputs.test_scale)), truth(open_truth(inputs.truth, inputs)),
-          truth_right(open_truth(inputs.truth_right, inputs)), mask(open(inputs.mask, 1))
+          truth_right(open_truth(inputs.truth_right, inputs)), mask(open(inputs.mask, 1)),
+          confidence(open(inputs.confidence, 1))
     {
         require_size_of_test(truth, test->size().cols);
         require_size_of_test(mask, test->size().cols);
+        require_size_of_test(confidence, test->size().cols);
         if (truth_right) {
             require_size_of_test(truth_right, truth_right->size().cols); // rows alone
         }
@@ -102,7 +105,7 @@ struct Rasters {
 
     void read(int row, int rows)
     {
-        for (const OptionalStrips* raster : {&test, &truth, &truth_right, &mask}) {
+        for (const OptionalStrips* raster : {&test, &truth, &truth_right, &mask, &confidence}) {
             if (*raster) {
                 (*raster)->read(row, rows);
             }
@@ -171,8 +174,11 @@ void for_each_row(const DisparityInputs& inputs, const RowVisitor& visit)
         rasters.read(row, rows);
         for (int r = 0; r < rows; ++r) {
             fill_mask(rasters, inputs, r, counts);
-            visit(rasters.test->row(r),
-                  rasters.truth ? rasters.truth->row(r) : std::span<const float>{}, counts);
+            const auto row_of = [r](const OptionalStrips& raster) {
+                return raster ? raster->row(r) : std::span<const float>{};
+            };
+            visit({rasters.test->row(r), row_of(rasters.truth), counts,
+                   row_of(rasters.confidence)});
         }
     }
 }

@@ -20,6 +20,7 @@ struct DisparityInputs {
     std::string truth_right; ///< its right view: only non-occluded pixels count, by cross-check
     std::string mask;        ///< of the left image's size
     std::optional<double> mask_value; ///< pixels of this mask value count; else all but 0
+    std::string confidence;           ///< of the test's size, 0..255; may be empty
     double test_scale = 1;            ///< stored value / scale = disparity in pixels
     double truth_scale = 1;
     /// The stored value of the truths that means "unknown"; NaN: there is none. Without it,
@@ -31,11 +32,14 @@ struct DisparityInputs {
     void validate() const;
 };
 
-/// One row of everything: the test, the truth (empty if there is none), and 0 where a pixel
-/// does not count.
-using RowVisitor =
-    std::function<void(std::span<const float> test_px, std::span<const float> truth_px,
-                       std::span<const std::uint8_t> mask)>;
+/// One row of everything; what there is no raster of is empty.
+struct DisparityRow {
+    std::span<const float> test_px;
+    std::span<const float> truth_px;
+    std::span<const std::uint8_t> mask; ///< 0 where a pixel does not count
+    std::span<const float> confidence;
+};
+using RowVisitor = std::function<void(const DisparityRow&)>;
 
 /// Reads the rasters strip by strip and hands over every row, from top to bottom. Throws
 /// io::ConfigError for contradictory inputs, io::InputError where a raster cannot be read or

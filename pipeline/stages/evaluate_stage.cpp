@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 
+#include <array>
 #include <stdexcept>
 
 namespace hsgm::pipeline {
@@ -35,10 +36,27 @@ evaluate::DisparityScore score_disparity(const DisparityInputs& inputs,
         throw io::ConfigError("a disparity score needs a truth");
     }
     auto scorer = as_config_error([&] { return evaluate::DisparityScorer(thresholds_px); });
-    for_each_row(inputs, [&](auto test_px, auto truth_px, auto mask) {
-        scorer.add_row(test_px, truth_px, mask);
+    for_each_row(inputs, [&](const DisparityRow& row) {
+        scorer.add_row(row.test_px, row.truth_px, row.mask);
     });
     return scorer.score();
+}
+
+evaluate::ConfidenceScore score_confidence(const DisparityInputs& inputs, double threshold_px)
+{
+    if (inputs.truth.empty() || inputs.confidence.empty()) {
+        throw io::ConfigError("a confidence score needs a confidence and a truth");
+    }
+    constexpr std::array<double, 5> kDropped{0, 10, 20, 30, 50};
+    auto scorer = as_config_error([&] { return evaluate::ConfidenceScorer(threshold_px); });
+    try {
+        for_each_row(inputs, [&](const DisparityRow& row) {
+            scorer.add_row(row.test_px, row.truth_px, row.confidence, row.mask);
+        });
+    } catch (const std::invalid_argument& refused) {
+        throw io::InputError(inputs.confidence + ": " + refused.what());
+    }
+    return scorer.score(kDropped);
 }
 
 std::vector<evaluate::SeamScore> score_seams(const DisparityInputs& inputs,
@@ -48,9 +66,9 @@ std::vector<evaluate::SeamScore> score_seams(const DisparityInputs& inputs,
     for (const int cell_px : cells_px) {
         scorers.push_back(as_config_error([&] { return seam_scorer(cell_px); }));
     }
-    for_each_row(inputs, [&](auto test_px, auto truth_px, auto mask) {
+    for_each_row(inputs, [&](const DisparityRow& row) {
         for (evaluate::SeamScorer& scorer : scorers) {
-            scorer.add_row(test_px, truth_px, mask);
+            scorer.add_row(row.test_px, row.truth_px, row.mask);
         }
     });
     std::vector<evaluate::SeamScore> scores;

@@ -18,6 +18,10 @@
 
 #include <algorithm>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace hsgm::pipeline {
 
 namespace {
@@ -94,10 +98,20 @@ TileTask read_tile(int tile, const tiling::TilePlan& plan, const Matcher& matche
     return task;
 }
 
+// What a stage has freed goes back to the system: the plan counts stages one by one, and the
+// program otherwise keeps freed memory for the next tile.
+void give_back_freed_memory()
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 void match_tiles(const PlannedJob& planned, const Matcher& matcher,
                  const PreparedPair& prepared, FirstPass& first_pass, const Progress& progress)
 {
     const auto coarse = solve_coarse(matcher, prepared);
+    give_back_freed_memory();
     const tiling::TilePlan plan(planned.shape.left, planned.budget.tile_size_px);
     const auto trouble = [](int tile, const std::string& why) {
         spdlog::warn("{}; {}", why,
@@ -117,6 +131,16 @@ void match_tiles(const PlannedJob& planned, const Matcher& matcher,
     run_tiles(sequence, steps, workers, planned.budget.tiles_in_flight);
 }
 
+void run_first_pass(const PlannedJob& planned, const PreparedPair& prepared,
+                    FirstPass& first_pass, const Progress& progress)
+{
+    {
+        const Matcher matcher(pair_traits(planned, prepared), planned.job.matcher);
+        match_tiles(planned, matcher, prepared, first_pass, progress);
+    }
+    give_back_freed_memory();
+}
+
 MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
 {
     const Job& job = planned.job;
@@ -125,8 +149,8 @@ MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
     const io::ScratchFolder scratch(folder_of(job.outputs.disparity));
     FirstPass first_pass(planned.shape, scratch.path());
     const PreparedPair prepared(left, right, planned.pyramid_levels, scratch.path());
-    const Matcher matcher(pair_traits(planned, prepared), job.matcher);
-    match_tiles(planned, matcher, prepared, first_pass, progress);
+    give_back_freed_memory();
+    run_first_pass(planned, prepared, first_pass, progress);
     return refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
 }
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Prints the quality and memory tables of docs/benchmarks.md as Markdown.
 
-    tests/benchmarks/tables.py [--hsgm build/hsgm] [--data ../shared/data] [seams|middlebury|peers|memory ...]
+    tests/benchmarks/tables.py [--hsgm build/hsgm] [--data ../shared/data] [TABLE ...]
+
+Tables: seams, middlebury, peers, ablation, costs, memory.
 
 Needs the program and, but for `seams` and `memory`, the data folder of real pairs. Quality
 does not depend on the machine; memory hardly does.
@@ -14,10 +16,11 @@ import subprocess
 import sys
 import tempfile
 
-RAW = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.subpixel=sums", "matcher.median=off"]
+RAW = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.subpixel=sums",
+       "matcher.min_confidence=0", "matcher.median=off", "matcher.smooth=off"]
 # Every pixel answers, but the answer is filtered, as that of OpenCV's matcher always is.
-ANSWERED = ["matcher.left_right_px=off", "matcher.speckle_px=off"]
-CLOSE_UP = ["matcher.cost=pairs_bt", "matcher.p1=20"]
+ANSWERED = ["matcher.left_right_px=off", "matcher.speckle_px=off", "matcher.min_confidence=0"]
+CLOSE_UP = ["matcher.profile=close"]
 PATHS = {}
 
 
@@ -133,15 +136,22 @@ def readable(truth, folder):
     return vrt
 
 
-def score_scene(scene, settings, folder, threshold=1):
-    _, place, disparity, truth, options = scene
+def match_scene(scene, settings, folder):
+    _, place, disparity, _, _ = scene
     data = os.path.join(PATHS["data"], place)
-    here = [os.path.join(data, o) if o.endswith(".png") else o for o in options]
     test = os.path.join(folder, "scene.tif")
     images = [f for f in os.listdir(data) if f.startswith(("left", "right."))]
     left, right = (os.path.join(data, next(f for f in sorted(images) if f.startswith(side)))
                    for side in ("left", "right"))
     match(left, right, disparity, settings, test)
+    return test
+
+
+def score_scene(scene, settings, folder, threshold=1):
+    _, place, _, truth, options = scene
+    data = os.path.join(PATHS["data"], place)
+    here = [os.path.join(data, o) if o.endswith(".png") else o for o in options]
+    test = match_scene(scene, settings, folder)
     return score(test, readable(os.path.join(data, truth), folder), "--thresholds", str(threshold), *here)
 
 
@@ -173,6 +183,55 @@ def peers(folder):
     print()
 
 
+# What each step and choice is worth: the defaults, and one thing changed.
+CHANGES = [
+    ("defaults", []),
+    ("prior: false", ["matcher.prior=false"]),
+    ("smooth: off", ["matcher.smooth=off"]),
+    ("median: off", ["matcher.median=off"]),
+    ("subpixel: sums", ["matcher.subpixel=sums"]),
+    ("prune: false", ["matcher.prune=false"]),
+    ("halo: 0", ["matcher.halo=0"]),
+    ("mode: sgm", ["matcher.mode=sgm"]),
+    ("paths: 4", ["matcher.paths=4"]),
+    ("paths: 16", ["matcher.paths=16"]),
+    ("p1: 16", ["matcher.p1=16"]),
+    ("profile: aerial", ["matcher.profile=aerial"]),
+    ("profile: close", ["matcher.profile=close"]),
+    ("close, paths: 8", ["matcher.profile=close", "matcher.paths=8"]),
+]
+
+
+def answered_rows(folder, title, changes):
+    made = os.path.join(folder, "city")
+    run("synth", os.path.join(PATHS["configs"], "scene-city.yaml"), "-o", made)
+    scenes = [(scene, 1) for scene in CLASSICS + OTHERS] + [(scene, 3) for scene in COARSE]
+    header(title, *[scene[0] for scene, _ in scenes], "noisy city")
+    for name, change in changes:
+        settings = ANSWERED + change
+        values = [bad(score_scene(scene, settings, folder, limit), limit) for scene, limit in scenes]
+        test = os.path.join(folder, "city.tif")
+        match(os.path.join(made, "left.tif"), os.path.join(made, "right.tif"), "-8,56", settings, test)
+        values.append(bad(score(test, os.path.join(made, "truth_left.tif"), "--mask",
+                                os.path.join(made, "visible_left.tif")), 1))
+        row(name, *[f"{v:.2f}" for v in values])
+    print()
+
+
+def ablation(folder):
+    print("### One thing changed\n")
+    answered_rows(folder, "change", CHANGES)
+
+
+COSTS = ["census5x5", "census7x7", "census9x7", "pairs5x5", "ternary5x5", "census_ad", "pairs_bt",
+         "birchfield_tomasi", "hmi"]
+
+
+def costs(folder):
+    print("### Matching costs\n")
+    answered_rows(folder, "cost", [(cost, [f"matcher.cost={cost}"]) for cost in COSTS])
+
+
 def peak_mebibytes(arguments):
     # A shell of its own, since a parent's maximum is over all children it ever had.
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
@@ -201,20 +260,29 @@ def memory(folder):
     print()
 
 
-TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "memory": memory}
+TABLES = {"seams": seams, "middlebury": middlebury, "peers": peers, "ablation": ablation,
+          "costs": costs, "memory": memory}
 
 
-def main():
+def add_paths(parser):
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], default=list(TABLES))
     parser.add_argument("--hsgm", default=os.path.join(root, "build", "hsgm"))
     parser.add_argument("--data", default=os.environ.get(
         "HSGM_DATA_DIR", os.path.join(root, "..", "shared", "data")))
+    PATHS.update(root=root, configs=os.path.join(root, "configs"))
+
+
+def use_paths(arguments):
+    PATHS.update(hsgm=arguments.hsgm, data=arguments.data)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", choices=[*TABLES, []], default=list(TABLES))
+    add_paths(parser)
     arguments = parser.parse_args()
-    PATHS.update(hsgm=arguments.hsgm, data=arguments.data,
-                 configs=os.path.join(root, "configs"))
+    use_paths(arguments)
     with tempfile.TemporaryDirectory() as folder:
         for table in arguments.tables:
             TABLES[table](folder)

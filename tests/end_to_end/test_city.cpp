@@ -52,6 +52,49 @@ TEST_CASE("a city goes from its scene file to heights with a small error")
     CHECK(seams["window_64"]["ratio_low"] <= 1.05); // so few borders: a wide interval
 }
 
+TEST_CASE("a city's confidence tells where its errors are")
+{
+    const TemporaryFolder folder;
+    make_city(folder);
+    const auto evaluate = [&](std::vector<std::string> more) {
+        std::vector<std::string> command{"evaluate",
+                                         "disparity",
+                                         folder / "result/disparity.tif",
+                                         folder / "scene/truth_left.tif",
+                                         "--confidence",
+                                         folder / "result/confidence.tif"};
+        command.insert(command.end(), more.begin(), more.end());
+        return hsgm_does(command).out;
+    };
+    const json score = json::parse(evaluate({"--json"}))["confidence"];
+    CHECK(score["threshold_px"] == 1);
+    REQUIRE(score["curve"].size() == 5);
+    CHECK(score["curve"][1]["dropped_percent"] == 10);
+    CHECK(score["curve"][1]["bad_percent"] < score["curve"][0]["bad_percent"]);
+    CHECK(score["area_percent"] > score["optimal_area_percent"]);
+    CHECK(score["calibration_error"] < 0.1);
+    CHECK(score["classes"][0]["confidence"] >= 128);
+    CHECK_THAT(evaluate({"--confidence-px", "2"}),
+               Catch::Matchers::Contains("error above 2 px among the rest"));
+}
+
+TEST_CASE("holes are made up only where that is asked for, and say so")
+{
+    const TemporaryFolder folder;
+    make_city(folder);
+    const auto answered = [&] {
+        return json::parse(hsgm_does({"evaluate", "disparity", folder / "result/disparity.tif",
+                                      folder / "scene/truth_left.tif", "--json"})
+                               .out)["density_percent"]
+            .get<double>();
+    };
+    const double measured = answered();
+    const std::string said =
+        hsgm_does({"run", folder / "run.yaml", "--set", "matcher.fill=all"}).err;
+    CHECK(answered() > measured + 3);
+    CHECK_THAT(said, Catch::Matchers::Contains("interpolated"));
+}
+
 TEST_CASE("a run writes its rasters and its configuration, and from that the same again")
 {
     const TemporaryFolder folder;

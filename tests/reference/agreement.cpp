@@ -189,15 +189,16 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     Options& o = c.options;
     o.mode = random.one_of(
         {Mode::hsgm, Mode::hsgm, Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local});
-    o.cost = random.one_of({Cost::census5x5, Cost::census7x7, Cost::census7x7, Cost::census9x7,
-                            Cost::pairs5x5, Cost::ternary5x5, Cost::census_ad, Cost::pairs_bt,
-                            Cost::birchfield_tomasi, Cost::hmi});
+    const auto costs = matcher::all_costs();
+    o.cost =
+        costs[static_cast<std::size_t>(random.between(0, static_cast<int>(costs.size()) - 1))];
     o.paths = random.one_of({4, 5, 8, 8, 16});
     o.levels = random.chance(80) ? random.between(1, 4) : 0;
     o.window_px = random.one_of({16, 16, 32, 64});
     o.halo_px = std::min(o.window_px, 2 * random.between(0, 8));
     o.p2 = random.chance(50) ? 192 : random.between(0, 207);
     o.p1 = random.chance(50) ? std::min(24, o.p2) : random.between(0, o.p2);
+    o.p2_half_tone = random.chance(50) ? 5 : random.between(1, random.one_of({20, 255}));
     o.prior = random.chance(60);
     o.prune = random.chance(60);
     o.left_right_px = random.between(-1, 3);
@@ -206,6 +207,7 @@ Case random_case(std::uint64_t seed, const Theme& theme)
     o.subpixel = random.chance(75) ? Subpixel::census : Subpixel::sums;
     o.min_confidence = random.chance(50) ? 0 : random.between(0, 255);
     o.median = random.one_of({1, 3, 3, 5});
+    o.smooth = random.one_of({1, 3, 5, 5});
     o.fill = random.one_of({Fill::none, Fill::occluded, Fill::all});
     o.fill_px = random.one_of({1, 3, 20, 256});
     theme.vary(random, o);
@@ -264,12 +266,13 @@ std::string Case::describe() const
         << tone_right.hi << "], mode " << name(options.mode) << ", cost " << name(options.cost)
         << ", paths " << options.paths << ", levels " << options.levels << ", window "
         << options.window_px << ", halo " << options.halo_px << ", p1 " << options.p1 << ", p2 "
-        << options.p2 << ", prior " << options.prior << ", prune " << options.prune
-        << ", left_right_px " << options.left_right_px << ", speckle_px " << options.speckle_px
+        << options.p2 << ", p2_half_tone " << options.p2_half_tone << ", prior "
+        << options.prior << ", prune " << options.prune << ", left_right_px "
+        << options.left_right_px << ", speckle_px " << options.speckle_px
         << ", speckle_range_px " << options.speckle_range_px << ", subpixel "
         << name(options.subpixel) << ", min_confidence " << options.min_confidence
-        << ", median " << options.median << ", fill " << name(options.fill) << ", fill_px "
-        << options.fill_px << ", tiles";
+        << ", median " << options.median << ", smooth " << options.smooth << ", fill "
+        << name(options.fill) << ", fill_px " << options.fill_px << ", tiles";
     for (const Rect& tile : tiles) {
         out << " " << tile;
     }

@@ -62,10 +62,9 @@ std::int32_t census_fraction(const Image<std::uint16_t>& left,
 std::uint8_t confidence_at(const Surface& surface, const Image<std::uint8_t>& margins, int row,
                            int x)
 {
-    constexpr std::array<int, 50> kTable{
-        2,   4,   8,   12,  17,  23,  29,  36,  43,  50,  59,  68,  78,  88,  98,  109, 119,
-        129, 138, 147, 156, 164, 172, 179, 185, 191, 197, 202, 207, 211, 215, 219, 222, 225,
-        228, 230, 232, 234, 236, 238, 240, 242, 244, 246, 248, 250, 251, 252, 253, 254};
+    constexpr std::array<int, 25> kTable{60,  71,  85,  102, 121, 140, 157, 174, 187,
+                                         199, 211, 222, 230, 236, 241, 244, 247, 248,
+                                         249, 250, 251, 252, 253, 254, 255};
     int score = 0;
     for (const int distance : {2, 5}) {
         for (const int rows : {-distance, 0, distance}) {
@@ -84,7 +83,7 @@ std::uint8_t confidence_at(const Surface& surface, const Image<std::uint8_t>& ma
             score += surface.has(r, c) ? margins(r, c) : 0;
         }
     }
-    return static_cast<std::uint8_t>(kTable[static_cast<std::size_t>(score / 256)]);
+    return static_cast<std::uint8_t>(kTable[static_cast<std::size_t>(score / 512)]);
 }
 
 } // namespace hsgm::reference

@@ -32,14 +32,16 @@ namespace {
 PixelCosts matching_costs(const LevelPair& pair, int row, int col, DisparityRange range,
                           const Options& options, const Level* coarser)
 {
-    const bool with_prior = options.prior && coarser != nullptr && is_flat(pair, row, col);
+    const bool with_prior = options.prior && coarser != nullptr;
+    const bool flat = is_flat(pair, row, col);
     PixelCosts costs(range);
     for (int d = range.min; d <= range.max; ++d) {
         costs.at(d) = matching_cost(pair, row, col, d);
         ensure(costs.at(d) <= rule(pair.cost).max, "a matching cost is at most C_max");
         if (with_prior) {
-            const std::uint32_t added = prior_at(coarser->priors(row / 2, col / 2), d) >> 2;
-            ensure(added <= 4, "the prior adds at most 4");
+            const std::uint32_t prior = prior_at(coarser->priors(row / 2, col / 2), d);
+            const std::uint32_t added = flat ? prior >> 2 : prior >> 4;
+            ensure(added <= (flat ? 4u : 1u), "the prior adds at most 4, or 1");
             costs.at(d) += added;
         }
     }
@@ -55,7 +57,8 @@ std::uint32_t penalty_of_jump(const LevelPair& pair, int row, int col, int row_b
     const int here = pair.tone_left(row, col);
     if (options.mode != Mode::hsgm_paper) {
         const int before = pair.tone_left(row_before, col_before);
-        return gradient_penalty(options.p1, options.p2, std::abs(here - before));
+        return gradient_penalty(options.p1, options.p2, options.p2_half_tone,
+                                std::abs(here - before));
     }
     const int before = entering ? coarser->pair.tone_left(row_before / 2, col_before / 2)
                                 : pair.tone_left(row_before, col_before);

@@ -31,9 +31,9 @@ std::vector<Step> directions(int paths)
     }
 }
 
-std::uint32_t gradient_penalty(int p1, int p2, int a)
+std::uint32_t gradient_penalty(int p1, int p2, int half, int a)
 {
-    return static_cast<std::uint32_t>(p1 + (p2 - p1) * 5 / (5 + a));
+    return static_cast<std::uint32_t>(p1 + (p2 - p1) * half / (half + a));
 }
 
 std::uint32_t paper_penalty(int p1, int p2, int a)

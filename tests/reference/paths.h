@@ -14,8 +14,8 @@ struct Step {
 };
 std::vector<Step> directions(int paths);
 
-/// P2' of the gradient rule, `a` being the difference of the tones.
-std::uint32_t gradient_penalty(int p1, int p2, int a);
+/// P2' of the gradient rule with its parameter `half`, `a` being the difference of the tones.
+std::uint32_t gradient_penalty(int p1, int p2, int half, int a);
 /// P2' of eq. 3 of Won and Jung.
 std::uint32_t paper_penalty(int p1, int p2, int a);
 

@@ -58,6 +58,22 @@ std::int32_t median_of_valid(const Image<std::int32_t>& disparity_q8,
     return values[(values.size() - 1) / 2];
 }
 
+std::int32_t mean_of_near(const Surface& surface, int row, int col, int side)
+{
+    const std::int32_t own = surface.q8(row, col);
+    std::int32_t sum = 0;
+    std::int32_t count = 0;
+    for (int r = row - side / 2; r <= row + side / 2; ++r) {
+        for (int c = col - side / 2; c <= col + side / 2; ++c) {
+            if (surface.has(r, c) && std::abs(surface.q8(r, c) - own) <= 256) {
+                sum += surface.q8(r, c);
+                ++count;
+            }
+        }
+    }
+    return tiling::floor_div(2 * sum + count, 2 * count);
+}
+
 Image<int> segment_sizes(const Surface& surface, int range_q8)
 {
     const Size size = surface.q8.size();
@@ -127,6 +143,7 @@ public:
         find_fractions();
         find_confidences();
         take_medians();
+        take_means();
         fill_holes();
         RefineResult result{Image<float>(size_, -32768.0F), confidence_, reasons_};
         each_value([&](int row, int col) {
@@ -228,6 +245,15 @@ private:
         each_value([&](int row, int col) {
             values(row, col) =
                 median_of_valid(surface_.q8, reasons_, row, col, options_.median);
+        });
+        surface_.q8 = values;
+    }
+
+    void take_means()
+    {
+        Image<std::int32_t> values = surface_.q8;
+        each_value([&](int row, int col) {
+            values(row, col) = mean_of_near(surface_, row, col, options_.smooth);
         });
         surface_.q8 = values;
     }

@@ -25,10 +25,13 @@ Image<int> segment_sizes(const Surface& surface, int range_q8);
 std::int32_t median_of_valid(const Image<std::int32_t>& disparity_q8,
                              const Image<std::uint16_t>& reasons, int row, int col, int side);
 
-/// What step 10 finds in the eight directions of a pixel, sorted.
+/// Step 10 for a pixel that has a value.
+std::int32_t mean_of_near(const Surface& surface, int row, int col, int side);
+
+/// What step 11 finds in the eight directions of a pixel, sorted.
 std::vector<std::int32_t> values_around(const Surface& surface, int row, int col, int reach_px);
 
-/// Section 6, steps 4 to 10, and the outputs.
+/// Section 6, steps 4 to 11, and the outputs.
 RefineResult refine(const MatchResult& match, DisparityRange asked, const Options& options);
 
 } // namespace hsgm::reference

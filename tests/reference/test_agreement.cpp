@@ -37,7 +37,7 @@ TEST_CASE("random cases prune ranges, use the prior and meet every reason")
     }
     CHECK(pruned_windows > windows / 2);
     CHECK(changes > windows / 4);
-    CHECK(flat > pixels / 100);
+    CHECK(flat > pixels / 200);
     CHECK(found > pixels / 4);
     CHECK(found < pixels);
     for (const auto& [reason, name] : hsgm::matcher::kReasonNames) {

@@ -67,7 +67,7 @@ Case part_of(const std::string& scene, const Rect& part, DisparityRange asked, b
 
 void compare_costs(Case c)
 {
-    for (const Cost cost : kCosts) {
+    for (const Cost cost : hsgm::matcher::all_costs()) {
         c.options.cost = cost;
         if (cost == Cost::hmi) {
             c.hmi = solve_hmi(c.pair.left, c.pair.right, c.asked, c.tone_left, c.tone_right,

@@ -55,7 +55,7 @@ TEST_CASE("matcher and twin agree for every cost, number of paths, width and vec
         const Limited limited(target);
         INFO(hwy::TargetName(target));
         std::uint64_t first = 1'500'000;
-        for (const Cost cost : kCosts) {
+        for (const Cost cost : hsgm::matcher::all_costs()) {
             for (const int paths : {4, 5, 8, 16}) {
                 for (const bool wide : {false, true}) {
                     compare(of_cost(cost, paths, wide), first += 100, 8);

@@ -25,11 +25,6 @@ Theme of_cost(Cost cost, int paths, bool wide);
 /// The default options on images of a few windows.
 Theme defaults();
 
-/// Every matching cost that there is.
-inline constexpr Cost kCosts[] = {Cost::census5x5, Cost::census7x7,         Cost::census9x7,
-                                  Cost::pairs5x5,  Cost::ternary5x5,        Cost::census_ad,
-                                  Cost::pairs_bt,  Cost::birchfield_tomasi, Cost::hmi};
-
 /// Checks seeds first.. of a theme. HSGM_REFERENCE_CASES sets another number of cases,
 /// HSGM_REFERENCE_SEED repeats the one that a failure named.
 void compare(const Theme& theme, std::uint64_t first, int cases);

@@ -45,6 +45,9 @@ TEST_CASE("values of the wrong type, unit or size are refused by key")
     refused("median: 4", {"'matcher.median'", "1 (off), 3 or 5", "not 4"});
     refused("levels: 13", {"'matcher.levels' is '13'", "from 1 to 12 or 'auto'"});
     refused("prior: maybe", {"'matcher.prior' is 'maybe'", "true or false"});
+    refused("smooth: 4", {"'matcher.smooth'", "1 (off), 3 or 5", "not 4"});
+    refused("p2_half_tone: 0", {"'matcher.p2_half_tone' is '0'", "from 1 to 255"});
+    refused("profile: city", {"'matcher.profile' is 'city'", "satellite, aerial, close"});
     refused("mode: fast", {"'matcher.mode' is 'fast'", "hsgm, hsgm-paper, sgm, local"});
     place.refused_config(pair_config() + "run: {memory: 8 bananas}\n",
                          {"bad.yaml:5:15", "'run.memory'", "8 bananas", "GiB"});

@@ -77,6 +77,23 @@ TEST_CASE("a run of float images with holes and NaN gives the same files for eve
           }) > 100);
 }
 
+TEST_CASE("a run that fills its holes gives the same files for every tiling")
+{
+    const TemporaryFolder folder(quick_folder());
+    pipeline::Job job = write_pair(town(), Storage::uint8, folder.path());
+    job.matcher.speckle_px = 120;
+    job.matcher.min_confidence = 160;
+    job.matcher.fill = matcher::Fill::all;
+    CHECK(differences_between(job, {{0, 1},
+                                    {64, 2, TileOrder::shuffled},
+                                    {100, 2, TileOrder::reversed},
+                                    {std::nullopt, 2, TileOrder::rows, 256 * kMiB}}) == "");
+    const auto reasons = run(job)[2].pixels;
+    CHECK(std::count_if(reasons.begin(), reasons.end(), [](double bits) {
+              return (static_cast<int>(bits) & matcher::kInterpolated) != 0;
+          }) > 100);
+}
+
 TEST_CASE("runs of the other modes give the same files for every tiling")
 {
     using matcher::Cost;

@@ -3,6 +3,7 @@
 #include "tests/seam/stereo.h"
 
 #include <string>
+#include <tuple>
 
 using namespace hsgm;
 using namespace hsgm::matcher;
@@ -136,6 +137,58 @@ TEST_CASE("other costs, paths, windows and penalties keep the bits as well")
     options.halo_px = 30;
     options.left_right_px = -1;
     check_tilings(small_city(), options, {{90, TileOrder::shuffled}});
+    for (const Cost cost : matcher::all_costs()) {
+        if (cost != Cost::hmi) { // above, with its table
+            check_tilings(small_city(), of(Mode::hsgm, cost, 8, 3),
+                          {{70, TileOrder::shuffled}});
+        }
+    }
+}
+
+TEST_CASE("checks, filters and made-up values keep the bits, however far they look")
+{
+    for (const auto& [speckle_px, fill, fill_px] : {std::tuple{0, Fill::none, 1},
+                                                    {3, Fill::all, 5},
+                                                    {60, Fill::occluded, 256},
+                                                    {500, Fill::all, 40}}) {
+        for (const Subpixel subpixel : {Subpixel::census, Subpixel::sums}) {
+            Options options;
+            options.levels = 3;
+            options.speckle_px = speckle_px;
+            options.speckle_range_px = speckle_px == 60 ? 3 : 1;
+            options.min_confidence = speckle_px == 3 ? 0 : 170;
+            options.median = speckle_px == 60 ? 5 : 3;
+            options.fill = fill;
+            options.fill_px = fill_px;
+            options.subpixel = subpixel;
+            INFO(speckle_px << " px, " << name(fill) << ", " << name(subpixel));
+            check_tilings(small_city(), options,
+                          {{33, TileOrder::shuffled}, {100, TileOrder::rows}});
+        }
+    }
+}
+
+TEST_CASE("the second pass refuses less than it depends on")
+{
+    const StereoPair& pair = small_city();
+    const Match match(pair, Options{});
+    const seam::Whole whole = match.match_all(0);
+    RefineInput input;
+    input.disparity_q8.rect = input.confidence.rect = input.reasons.rect =
+        rect_of(pair.left.size());
+    input.disparity_q8.pixels = whole.disparity_q8;
+    input.confidence.pixels = whole.confidence;
+    input.reasons.pixels = whole.reasons;
+    input.right_keys.rect = rect_of(pair.right.size());
+    input.right_keys.pixels = whole.right_keys;
+    const tiling::Rect piece{10, 20, 30, 40};
+    CHECK_THROWS_WITH(refine(piece, input, pair.shape(), Options{}),
+                      Catch::Contains("the left image"));
+    Options options;
+    options.subpixel = Subpixel::sums;
+    CHECK_NOTHROW(refine(piece, input, pair.shape(), options));
+    input.right_keys = {};
+    CHECK_THROWS_WITH(refine(piece, input, pair.shape(), options), Catch::Contains("keys"));
 }
 
 TEST_CASE("right images of another width and far ranges keep the bits")

@@ -86,6 +86,29 @@ TEST_CASE("masks count by value, or by not being zero")
     CHECK(score_disparity(inputs, {1}).evaluated == 2);
 }
 
+TEST_CASE("a confidence is scored beside its map, and named where it is none")
+{
+    const TemporaryFolder folder;
+    write<float>(folder / "test.tif", {1, 4}, {1, 2, 3, 9});
+    write<float>(folder / "truth.tif", {1, 4}, {1, 2, 3, 4});
+    write<std::uint8_t>(folder / "confidence.tif", {1, 4}, {200, 200, 200, 20});
+    write<float>(folder / "wild.tif", {1, 4}, {200, 300, 200, 20});
+    DisparityInputs inputs;
+    inputs.test = folder / "test.tif";
+    inputs.truth = folder / "truth.tif";
+    CHECK_THROWS_AS(score_confidence(inputs, 1), io::ConfigError);
+    inputs.confidence = folder / "confidence.tif";
+    const evaluate::ConfidenceScore score = score_confidence(inputs, 1);
+    REQUIRE(score.curve.size() == 5);
+    CHECK(score.curve[0].bad_percent == Approx(25));
+    CHECK(score.curve[3].dropped_percent == 30);
+    CHECK(score.curve[3].bad_percent == Approx(0).margin(1e-9));
+    inputs.confidence = folder / "wild.tif";
+    CHECK_THROWS_WITH(score_confidence(inputs, 1),
+                      Catch::Contains("wild.tif") && Catch::Contains("300"));
+    CHECK_THROWS_AS(score_confidence(inputs, 1), io::InputError);
+}
+
 TEST_CASE("rasters of different sizes are refused by name")
 {
     const TemporaryFolder folder;

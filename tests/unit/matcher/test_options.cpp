@@ -44,9 +44,21 @@ TEST_CASE("each option outside its bounds is named, with its value and what is a
           "halo must be an even number from 0 to the window size, not 66");
     CHECK(refusal([](Options& o) { o.p2 = 4001; }) == "p2 must be 0..4000, not 4001");
     CHECK(refusal([](Options& o) { o.p1 = 200; }) == "p1 must be 0..p2, not 200");
+    CHECK(refusal([](Options& o) { o.p2_half_tone = 0; }) ==
+          "p2_half_tone must be 1..255, not 0");
     CHECK(refusal([](Options& o) { o.left_right_px = -2; }) ==
           "left_right_px must be off or 0..64, not -2");
     CHECK(refusal([](Options& o) { o.median = 4; }) == "median must be 1 (off), 3 or 5, not 4");
+    CHECK(refusal([](Options& o) { o.speckle_px = 1; }) ==
+          "speckle_px must be off or 2..500, not 1");
+    CHECK(refusal([](Options& o) { o.speckle_px = 501; }) ==
+          "speckle_px must be off or 2..500, not 501");
+    CHECK(refusal([](Options& o) { o.speckle_range_px = 0; }) ==
+          "speckle_range_px must be 1..64, not 0");
+    CHECK(refusal([](Options& o) { o.min_confidence = 256; }) ==
+          "min_confidence must be 0..255, not 256");
+    CHECK(refusal([](Options& o) { o.fill_px = 0; }) == "fill_px must be 1..256, not 0");
+    CHECK(refusal([](Options& o) { o.smooth = 7; }) == "smooth must be 1 (off), 3 or 5, not 7");
 }
 
 TEST_CASE("the ends of what is allowed are allowed")
@@ -60,6 +72,9 @@ TEST_CASE("the ends of what is allowed are allowed")
     CHECK(refusal([](Options& o) { o.p1 = o.p2 = 0; }) == "accepted");
     CHECK(refusal([](Options& o) { o.left_right_px = -1; }) == "accepted");
     CHECK(refusal([](Options& o) { o.levels = 12; }) == "accepted");
+    CHECK(refusal([](Options& o) { o.speckle_px = 0; }) == "accepted");
+    CHECK(refusal([](Options& o) { o.speckle_px = 500; }) == "accepted");
+    CHECK(refusal([](Options& o) { o.min_confidence = 255; }) == "accepted");
 }
 
 TEST_CASE("a mode puts its own in place of what it has no use for")
@@ -85,10 +100,18 @@ TEST_CASE("modes and costs are found by their names")
     for (const Mode mode : {Mode::hsgm, Mode::hsgm_paper, Mode::sgm, Mode::local}) {
         CHECK(mode_from_name(name(mode)) == mode);
     }
-    CHECK(all_costs().size() >= 4);
+    CHECK(all_costs().size() >= 9);
     for (const Cost cost : all_costs()) {
         CHECK(cost_from_name(name(cost)) == cost);
     }
+    for (const Subpixel subpixel : {Subpixel::census, Subpixel::sums}) {
+        CHECK(subpixel_from_name(name(subpixel)) == subpixel);
+    }
+    for (const Fill fill : {Fill::none, Fill::occluded, Fill::all}) {
+        CHECK(fill_from_name(name(fill)) == fill);
+    }
+    CHECK_THROWS_WITH(fill_from_name("some"),
+                      "fill must be one of none, occluded, all, not 'some'");
     CHECK_THROWS_WITH(mode_from_name("SGM"),
                       "mode must be one of hsgm, hsgm-paper, sgm, local, not 'SGM'");
     CHECK_THROWS_WITH(cost_from_name("census"),

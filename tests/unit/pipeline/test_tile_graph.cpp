@@ -128,6 +128,9 @@ TEST_CASE("an exception of any step ends the run and arrives at the caller")
         steps.read = [&](int tile) {
             ++started;
             fail_in("read", tile);
+            if (tile > 500) { // time for a failing step on a busy machine to be heard
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            }
             return numbered_task(tile);
         };
         steps.write = [&](int tile, const matcher::TileMatch&) { fail_in("write", tile); };

@@ -70,6 +70,8 @@ struct Line {
         options.p2 = 11;
         options.median = 1;
         options.speckle_px = 0;
+        options.min_confidence = 0;
+        options.smooth = 1;
         options.subpixel = Subpixel::sums;
     }
     MatchResult solve() const { return match(left, right, asked, {}, {}, options, &table); }
@@ -141,6 +143,7 @@ TEST_CASE("the twin names why a pixel has no counterpart")
     Options options;
     options.mode = Mode::sgm;
     options.speckle_px = 0;
+    options.min_confidence = 0;
     const auto left = pixels({{10, 200, 30, 90}});
     const auto right = pixels({{10, kNodata, 30}});
     const MatchResult result = match(left, right, {2, 2}, {}, {}, options);

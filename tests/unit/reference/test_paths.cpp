@@ -31,9 +31,11 @@ TEST_CASE("the twin's directions are distinct and as many as asked")
 
 TEST_CASE("the twin's penalties fall with the gradient")
 {
-    CHECK(gradient_penalty(24, 192, 0) == 192);
-    CHECK(gradient_penalty(24, 192, 5) == 108);
-    CHECK(gradient_penalty(24, 192, 255) == 27); // 24 + 840 / 260
+    CHECK(gradient_penalty(24, 192, 5, 0) == 192);
+    CHECK(gradient_penalty(24, 192, 5, 5) == 108);
+    CHECK(gradient_penalty(24, 192, 5, 255) == 27); // 24 + 840 / 260
+    CHECK(gradient_penalty(24, 192, 10, 5) == 136); // 24 + 1680 / 15
+    CHECK(gradient_penalty(24, 192, 10, 10) == 108);
     CHECK(paper_penalty(24, 192, 0) == 192);
     CHECK(paper_penalty(24, 192, 1) == 108);
     CHECK(paper_penalty(24, 192, 255) == 24);
