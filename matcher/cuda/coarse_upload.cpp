@@ -101,8 +101,9 @@ std::array<std::uint16_t, kTones> penalties(const Options& options)
     std::array<std::uint16_t, kTones> p2{};
     for (int a = 0; a < static_cast<int>(kTones); ++a) {
         p2[std::size_t(a)] = static_cast<std::uint16_t>(
-            options.mode == Mode::hsgm_paper ? p2_equation3(options.p1, options.p2, a)
-                                             : p2_gradient(options.p1, options.p2, a));
+            options.mode == Mode::hsgm_paper
+                ? p2_equation3(options.p1, options.p2, a)
+                : p2_gradient(options.p1, options.p2, options.p2_half_tone, a));
     }
     return p2;
 }

@@ -30,7 +30,7 @@ public:
         : frame_(frame), job_(*frame.job), strip_(strip), direction_(task.direction),
           dr_(job_.directions.row[task.direction]), dc_(job_.directions.col[task.direction]),
           region_(path_region(job_, frame.window.core, task.direction)), phase_(task.phase),
-          state_(frame.wide, frame.words())
+          state_(frame.wide, frame.words(), frame.window.count)
     {
         const int lines = dr_ == 0 ? strip.rows : region_.cols;
         const int line = task.line + Group::group_in_warp();
@@ -126,7 +126,7 @@ private:
     {
         state_.resume(from + slot());
         if (frame_.is_padded()) {
-            state_.pad(frame_.window.count);
+            state_.pad();
         }
     }
 
@@ -163,7 +163,7 @@ private:
                    static_cast<unsigned>(values.at(least + half + j)) << 16;
         });
         if (frame_.is_padded()) {
-            state_.pad(frame_.window.count);
+            state_.pad();
         }
     }
 
@@ -181,14 +181,14 @@ private:
     __device__ const unsigned* matching() const
     {
         return frame_.costs + (row_ - strip_.row) * job_.strips.cost_row +
-               (col_ - frame_.first_col) * job_.strips.pixel_stride +
-               (Group::kWide ? 0 : Group::lane());
+               (col_ - frame_.first_col) * job_.strips.cost_pixel +
+               (Group::kWide ? 0 : Group::lane() * Group::kCostWords);
     }
 
     __device__ void add_to_sums()
     {
         unsigned* const sums = frame_.sums + (row_ - strip_.row) * job_.strips.sum_row +
-                               (col_ - frame_.window.core.col) * job_.strips.pixel_stride;
+                               Group::sums_of(col_ - frame_.window.core.col, frame_.words());
         state_.each_word(
             [sums](int j, unsigned& word) { atomicAdd(&sums[Group::place(j)], word); });
     }

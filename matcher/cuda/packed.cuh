@@ -43,6 +43,12 @@ __device__ __forceinline__ unsigned lesser(unsigned a, unsigned b, unsigned c)
 #endif
 }
 
+/// The greater of each half.
+__device__ __forceinline__ unsigned most(unsigned a, unsigned b)
+{
+    return __vmaxu2(a, b);
+}
+
 /// Two words of pairs, all under 256, as four bytes, and back.
 __device__ __forceinline__ unsigned to_bytes(unsigned first, unsigned second)
 {

@@ -4,6 +4,17 @@
 
 namespace hsgm::matcher::cuda {
 
+/// Matching costs are stored as bytes, those of the high half twice: with 1 for the low half
+/// and 0x8000 for the high one, a product of 16-bit and 8-bit numbers adds two of them to a
+/// word, and the units that do it are not those of the minima.
+constexpr unsigned kCostFactors = 0x80000001U;
+
+/// Two words of costs, all under 128, as they are stored.
+__device__ __forceinline__ unsigned stored_costs(unsigned bytes)
+{
+    return bytes + (bytes & 0xFF00FF00U);
+}
+
 /// Word j of a pixel, with disparities beyond `count` infinitely dear.
 __device__ __forceinline__ unsigned padded_word(unsigned word, int j, int half, int count)
 {
@@ -22,9 +33,18 @@ struct PathState {
     static constexpr int kLanes = Group::kLanes;
 
     unsigned cost[kWords];
+    unsigned beyond[kWords]; ///< infinite where the range ends before
     unsigned least;
 
-    __device__ explicit PathState(unsigned*, int) {}
+    __device__ PathState(unsigned*, int, int count)
+    {
+        const int low = count - Group::first_word();
+        const int high = low - kLanes * kWords;
+#pragma unroll
+        for (int i = 0; i < kWords; ++i) {
+            beyond[i] = (i < low ? 0U : kInfinite) | (i < high ? 0U : kInfinite << 16);
+        }
+    }
 
     /// Calls f(j, word) for every word j of this lane.
     template <typename F>
@@ -46,17 +66,12 @@ struct PathState {
         least = 0;
     }
 
-    /// Makes everything beyond `count` disparities infinitely dear.
-    __device__ void pad(int count)
+    /// Makes everything beyond the range infinitely dear.
+    __device__ void pad()
     {
-        const int low = count - Group::first_word();
-        const int high = low - kLanes * kWords;
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
-            const unsigned dear =
-                (i < low ? 0U : kInfinite) | (i < high ? 0U : kInfinite << 16);
-            const unsigned keep = (i < low ? 0xFFFFU : 0U) | (i < high ? 0xFFFF0000U : 0U);
-            cost[i] = (cost[i] & keep) | dear;
+            cost[i] = most(cost[i], beyond[i]);
         }
     }
 
@@ -70,8 +85,8 @@ struct PathState {
         least = Group::least_half(word);
     }
 
-    /// Eq. 1 for the next pixel of the path, whose matching costs are at `matching`, a word
-    /// every kLanes. P1 and P2' in both halves. All lanes of the warp call it. `one` is 1, but
+    /// Eq. 1 for the next pixel of the path, whose matching costs are at `matching`. P1 and
+    /// P2' in both halves. All lanes of the warp call it. `one` is 1, but
     /// the compiler does not know: a product and sum go through other units than the minima.
     __device__ void step(const unsigned* matching, unsigned p1, unsigned p2, unsigned one)
     {
@@ -91,6 +106,7 @@ struct PathState {
             after = after >> 16 | kInfinite << 16;
         }
         const unsigned jump = least + p2;
+        const Costs costs(matching);
         unsigned minimum = kInfinitePair;
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
@@ -99,7 +115,7 @@ struct PathState {
             const unsigned best = lesser(cost[i], jump, aside);
             before = cost[i];
             // No half borrows from the other: best >= least in both.
-            cost[i] = matching[i * kLanes] + best - least;
+            cost[i] = costs.added(best + beyond[i] - least, i);
         }
 #pragma unroll
         for (int i = 0; i + 1 < kWords; i += 2) {
@@ -110,6 +126,32 @@ struct PathState {
         }
         least = Group::least_half(minimum);
     }
+
+    /// The matching costs of this lane, read at once.
+    struct Costs {
+        unsigned word[Group::kCostWords];
+
+        __device__ explicit Costs(const unsigned* from)
+        {
+            if constexpr (Group::kCostWords == 4) {
+                const uint4 all = *reinterpret_cast<const uint4*>(from);
+                word[0] = all.x;
+                word[1] = all.y;
+                word[2] = all.z;
+                word[3] = all.w;
+            } else {
+                for (int i = 0; i < Group::kCostWords; ++i) {
+                    word[i] = from[i];
+                }
+            }
+        }
+        /// `sum` and the costs of word `i`.
+        __device__ unsigned added(unsigned sum, int i) const
+        {
+            return i % 2 == 0 ? __dp2a_lo(kCostFactors, word[i / 2], sum)
+                              : __dp2a_hi(kCostFactors, word[i / 2], sum);
+        }
+    };
 
     /// L - min L of every disparity, for later.
     __device__ void park(std::uint8_t* to) const

@@ -42,8 +42,8 @@ struct TileArrays {
 struct StripLayout {
     int rows = 0;         ///< of a strip
     int words = 0;        ///< pairs of disparities of a pixel: half the padded range
-    int pixel_stride = 0; ///< words from pixel to pixel; skewed, so that banks do not clash
-    int cost_row = 0;     ///< words from row to row
+    int cost_pixel = 0;   ///< words from pixel to pixel
+    int cost_row = 0;     ///< words from row to row; skewed, so that banks do not clash
     int sum_row = 0;
     int key_row = 0;
     int line_slots = 0; ///< columns of a path region at most

@@ -116,10 +116,6 @@ private:
             }
         }
         __syncthreads();
-        if (job_.add_prior) {
-            costs.add_prior();
-            __syncthreads();
-        }
     }
 
     __device__ bool goes(int d, Way way) const
@@ -245,7 +241,7 @@ __device__ WindowFrame<Cell> frame_of(const SolveJob<Cell>& job)
 
 /// Solves the windows of a job: each block takes one after the other.
 template <typename Cell, typename Group>
-__global__ void __launch_bounds__(kMostThreads)
+__global__ void __launch_bounds__(kMostThreads, 1)
     solve_windows(const __grid_constant__ SolveJob<Cell> job)
 {
     WindowFrame<Cell> frame = frame_of<Cell, Group>(job);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "matcher/cuda/coarse_values.cuh"
 #include "matcher/cuda/path_step.cuh"
+#include "matcher/cuda/strip_prior.cuh"
 
 namespace hsgm::matcher::cuda {
 
@@ -43,8 +43,8 @@ struct TableCost {
 
     __device__ unsigned operator()(Feature left, Feature low, Feature high) const
     {
-        const std::uint8_t* const row = table + left.x * 256;
-        return __ldg(row + low.x) | static_cast<unsigned>(__ldg(row + high.x)) << 16;
+        return __ldg(table + (left.x << 8 | low.x)) |
+               static_cast<unsigned>(__ldg(table + (left.x << 8 | high.x))) << 16;
     }
 };
 
@@ -59,8 +59,8 @@ public:
     {
     }
 
-    /// C(p, d) of all pixels, without the prior. A thread takes a few pixels of a row and the
-    /// words of one lane: from word to word, its right pixels move on by one. Holds a barrier.
+    /// C(p, d) of all pixels. A thread takes a few pixels of a row and the words of one lane:
+    /// from word to word, its right pixels move on by one. Holds a barrier.
     __device__ void fill()
     {
         const CostRule& rule = job_.cost;
@@ -78,24 +78,16 @@ public:
         }
     }
 
-    /// Adds the gated prior; a warp looks at one pixel at a time. After a barrier.
-    __device__ void add_prior()
-    {
-        const int cols = frame_.end_col - frame_.first_col;
-        const int warps = static_cast<int>(blockDim.x) / kWarp;
-        for (int p = static_cast<int>(threadIdx.x) / kWarp; p < strip_.rows * cols;
-             p += warps) {
-            const int row = strip_.row + p / cols;
-            const int col = frame_.first_col + p % cols;
-            if (job_.low_texture.at(row, col) != 0) {
-                add_prior_at(row, col);
-            }
-        }
-    }
-
 private:
-    // An odd number of pixels: their costs then lie in different banks.
-    static constexpr int kPixels = 5;
+    // Two of them share a coarse pixel: strips begin at even columns.
+    static constexpr int kPixels = 4;
+
+    // Left and right pixels whose costs make up a word: those of the low and the high half.
+    struct Features {
+        Feature left[kPixels];
+        Feature low[kPixels];
+        Feature high[kPixels];
+    };
 
     // This thread's share of looking whether all pixels that the strip compares are valid.
     __device__ bool sees_valid_pixels() const
@@ -109,13 +101,13 @@ private:
             const int row = strip_.row + p / cols;
             const int i = p % cols;
             valid &= i < lefts ? job_.left.at(row, frame_.first_col + i).y
-                               : right_at(row, frame_.first_col - last + i - lefts).y;
+                               : right_row(row).at(frame_.first_col - last + i - lefts).y;
         }
         return valid != 0;
     }
 
     template <bool kAllValid, typename Rule>
-    __device__ void fill_with(const Rule& rule)
+    __device__ __forceinline__ void fill_with(const Rule& rule)
     {
         const int cols = frame_.end_col - frame_.first_col;
         const int across = (cols + kPixels - 1) / kPixels;
@@ -129,83 +121,119 @@ private:
         }
     }
 
-    __device__ Feature right_at(int row, int col) const
+    // A row of right pixels; those beyond its ends are not valid.
+    struct RightRow {
+        const Feature* first;
+        int col;
+        int cols;
+
+        __device__ Feature at(int at_col) const
+        {
+            const auto i = static_cast<unsigned>(at_col - col);
+            return i < static_cast<unsigned>(cols) ? first[i] : Feature{0, 0};
+        }
+    };
+    __device__ RightRow right_row(int row) const
     {
         const Area& area = job_.right.area;
-        return col >= area.col && col < area.col_end() ? job_.right.at(row, col)
-                                                       : Feature{0, 0};
+        return {&job_.right.at(row, area.col), area.col, area.cols};
     }
 
     // What lies outside the image, or is nodata, costs half of the most there is.
     template <bool kAllValid, typename Rule>
-    __device__ unsigned cost(const Rule& rule, Feature left, Feature low, Feature high) const
+    __device__ unsigned cost(const Rule& rule, const Features& f, int k) const
     {
-        const unsigned pair = rule(left, low, high);
+        const unsigned pair = rule(f.left[k], f.low[k], f.high[k]);
         if constexpr (kAllValid) {
             return pair;
         }
         const auto half = static_cast<unsigned>(job_.cost.most) / 2;
-        const bool low_valid = (left.y & low.y & kValidFeature) != 0;
-        const bool high_valid = (left.y & high.y & kValidFeature) != 0;
+        const bool low_valid = (f.left[k].y & f.low[k].y & kValidFeature) != 0;
+        const bool high_valid = (f.left[k].y & f.high[k].y & kValidFeature) != 0;
         return (low_valid ? pair & 0xFFFFU : half) |
                (high_valid ? pair & 0xFFFF0000U : half << 16);
     }
 
-    template <bool kAllValid, typename Rule>
-    __device__ void fill_piece(const Rule& rule, int row, int col, int lane)
+    __device__ Features first_features(const RightRow& right, int row, int col, int meets) const
     {
-        const int pixels = least_of(kPixels, frame_.end_col - col);
-        const int half = frame_.words();
-        Feature left[kPixels];
-        Feature low[kPixels];
-        Feature high[kPixels];
-        const int first = lane * kWords;
-        const int meets = col - frame_.window.least - first; // right column of the first word
+        Features f;
 #pragma unroll
         for (int k = 0; k < kPixels; ++k) {
-            left[k] = job_.left.at(row, least_of(col + k, frame_.end_col - 1));
-            low[k] = right_at(row, meets + k);
-            high[k] = right_at(row, meets - half + k);
+            f.left[k] = job_.left.at(row, least_of(col + k, frame_.end_col - 1));
+            f.low[k] = right.at(meets + k);
+            f.high[k] = right.at(meets - frame_.words() + k);
         }
-        unsigned* to = frame_.costs + (row - strip_.row) * job_.strips.cost_row +
-                       (col - frame_.first_col) * job_.strips.pixel_stride + lane;
-#pragma unroll 1
-        for (int i = 0; i < kWords; ++i) {
+        return f;
+    }
+    // To the next disparity, where the first pixel meets column `meets` of the right image.
+    __device__ void move_on(Features& f, const RightRow& right, int meets) const
+    {
 #pragma unroll
-            for (int k = 0; k < kPixels; ++k) {
-                unsigned pair = cost<kAllValid>(rule, left[k], low[k], high[k]);
-                if (frame_.is_padded()) {
-                    pair = padded_word(pair, first + i, half, frame_.window.count);
-                }
-                if (k < pixels) {
-                    to[k * job_.strips.pixel_stride] = pair;
-                }
-            }
-            to += Group::kLanes;
-#pragma unroll
-            for (int k = kPixels - 1; k > 0; --k) {
-                low[k] = low[k - 1];
-                high[k] = high[k - 1];
-            }
-            low[0] = right_at(row, meets - i - 1);
-            high[0] = right_at(row, meets - half - i - 1);
+        for (int k = kPixels - 1; k > 0; --k) {
+            f.low[k] = f.low[k - 1];
+            f.high[k] = f.high[k - 1];
+        }
+        f.low[0] = right.at(meets);
+        f.high[0] = right.at(meets - frame_.words());
+    }
+
+    template <bool kAllValid, typename Rule>
+    __device__ __forceinline__ void fill_piece(const Rule& rule, int row, int col, int lane)
+    {
+        const int meets = col - frame_.window.least - lane * kWords; // by the first word
+        const RightRow right = right_row(row);
+        Features f = first_features(right, row, col, meets);
+        unsigned* const to = frame_.costs + (row - strip_.row) * job_.strips.cost_row +
+                             (col - frame_.first_col) * job_.strips.cost_pixel;
+        if constexpr (Group::kWide) {
+            fill_word<kAllValid>(rule, f, row, col, lane, to);
+        } else {
+            fill_lane<kAllValid>(rule, f, right, row, col, lane, to + lane * Group::kCostWords);
         }
     }
 
-    __device__ void add_prior_at(int row, int col)
+    template <bool kAllValid, typename Rule>
+    __device__ __forceinline__ void fill_word(const Rule& rule, const Features& f, int row,
+                                              int col, int j, unsigned* to)
     {
-        const Window& coarse = job_.coarser.window_at(row / 2, col / 2);
-        const CoarseValues<std::uint8_t> prior{job_.coarser.prior_at(row / 2, col / 2),
-                                               coarse.least, coarse.count, kPriorCap};
-        unsigned* const costs = frame_.costs + (row - strip_.row) * job_.strips.cost_row +
-                                (col - frame_.first_col) * job_.strips.pixel_stride;
-        const int half = frame_.words();
-        for (int j = static_cast<int>(threadIdx.x) % kWarp; j < half; j += kWarp) {
-            const int d = frame_.window.least + j;
-            const int low = j < frame_.window.count ? prior.at(d) >> 2 : 0;
-            const int high = j + half < frame_.window.count ? prior.at(d + half) >> 2 : 0;
-            costs[Group::place(j)] += static_cast<unsigned>(low) | static_cast<unsigned>(high)
-                                                                       << 16;
+#pragma unroll
+        for (int k = 0; k < kPixels; ++k) {
+            if (col + k >= frame_.end_col) {
+                break;
+            }
+            const unsigned pair =
+                cost<kAllValid>(rule, f, k) + prior_pair(frame_, row, col + k, j);
+            reinterpret_cast<std::uint16_t*>(to + k * job_.strips.cost_pixel)[j] =
+                static_cast<std::uint16_t>(stored_costs((pair | pair >> 8) & 0xFFFFU));
+        }
+    }
+
+    template <bool kAllValid, typename Rule>
+    __device__ __forceinline__ void fill_lane(const Rule& rule, Features& f,
+                                              const RightRow& right, int row, int col, int lane,
+                                              unsigned* to)
+    {
+        const int pixels = least_of(kPixels, frame_.end_col - col);
+        int meets = col - frame_.window.least - lane * kWords;
+        StripPrior<Cell, kPixels> prior(frame_, row, col, lane * kWords);
+        // Two words at a time, that is four costs of each pixel.
+#pragma unroll 1
+        for (int i = 0; i < Group::kCostWords; ++i) {
+            unsigned first[kPixels];
+#pragma unroll
+            for (int k = 0; k < kPixels; ++k) {
+                first[k] = cost<kAllValid>(rule, f, k);
+            }
+            move_on(f, right, --meets);
+            prior.next();
+#pragma unroll
+            for (int k = 0; k < kPixels; ++k) {
+                const unsigned bytes = to_bytes(first[k], cost<kAllValid>(rule, f, k));
+                if (k < pixels) {
+                    to[k * job_.strips.cost_pixel + i] = stored_costs(bytes + prior.bytes(k));
+                }
+            }
+            move_on(f, right, --meets);
         }
     }
 

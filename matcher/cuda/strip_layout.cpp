@@ -40,11 +40,12 @@ StripLayout lay_out(const StripCase& c, int rows, bool parked_in_shared)
     StripLayout at;
     at.rows = rows;
     at.words = c.words;
-    // Pixels of a warp lie side by side; each brings `lanes` words at once.
-    at.pixel_stride = c.words + (c.lanes < 32 ? c.lanes : 0);
+    // Costs and sums of pixels side by side lie in different banks, and so do those of pixels
+    // one above the other.
+    at.cost_pixel = (c.words + 1) / 2;
     const int cols = c.window_px + 2 * c.halo_px;
-    at.cost_row = skewed(cols * at.pixel_stride, c.lanes % 32);
-    at.sum_row = skewed(c.window_px * at.pixel_stride, c.lanes % 32);
+    at.cost_row = skewed(cols * at.cost_pixel, c.wide ? 0 : at.cost_pixel % 32);
+    at.sum_row = skewed(c.window_px * c.words, c.lanes % 32);
     at.key_row = c.window_px + 2 * c.words;
     at.line_slots = c.window_px + c.halo_px;
     const auto row_count = static_cast<std::size_t>(rows);
@@ -106,8 +107,12 @@ StripLayout strip_layout(const StripCase& c)
     const StripLayout near = highest(c, true);
     const StripLayout far = highest(c, false);
     // What is parked is written over strip by strip and hardly leaves the second level cache:
-    // to put it there pays where it makes strips a quarter higher.
-    return 4 * far.rows >= 5 * near.rows ? far : near;
+    // to put it there pays where it makes fewer strips.
+    const auto strips = [&c](const StripLayout& layout) {
+        return layout.rows == 0 ? c.window_px + 1
+                                : (c.window_px + layout.rows - 1) / layout.rows;
+    };
+    return strips(far) < strips(near) ? far : near;
 }
 
 } // namespace hsgm::matcher::cuda

@@ -14,10 +14,14 @@ struct WideState {
     unsigned* cost;
     unsigned* next;
     int words;
+    int count;
     unsigned least = 0;
 
     /// `memory` has room for 2 * n words.
-    __device__ WideState(unsigned* memory, int n) : cost(memory), next(memory + n), words(n) {}
+    __device__ WideState(unsigned* memory, int n, int disparities)
+        : cost(memory), next(memory + n), words(n), count(disparities)
+    {
+    }
 
     template <typename F>
     __device__ void each_word(F f)
@@ -32,11 +36,12 @@ struct WideState {
         each_word([](int, unsigned& word) { word = 0; });
         least = 0;
     }
-    __device__ void pad(int count)
+    __device__ void pad()
     {
         const int half = words;
+        const int most = count;
         each_word(
-            [half, count](int j, unsigned& word) { word = padded_word(word, j, half, count); });
+            [half, most](int j, unsigned& word) { word = padded_word(word, j, half, most); });
     }
     __device__ void find_least()
     {
@@ -49,13 +54,17 @@ struct WideState {
     {
         __syncwarp(); // lanes read what their neighbours wrote
         const unsigned jump = least + p2;
+        const auto* const costs = reinterpret_cast<const std::uint16_t*>(matching);
         unsigned minimum = kInfinitePair;
         for (int j = Group::lane(); j < words; j += kWarp) {
             const unsigned before = j > 0 ? cost[j - 1] : cost[words - 1] << 16 | kInfinite;
             const unsigned after =
                 j + 1 < words ? cost[j + 1] : cost[0] >> 16 | kInfinite << 16;
             const unsigned aside = lesser(before, after) + p1;
-            const unsigned path = matching[j] + lesser(cost[j], jump, aside) - least;
+            const unsigned path =
+                padded_word(__dp2a_lo(kCostFactors, static_cast<unsigned>(costs[j]),
+                                      lesser(cost[j], jump, aside) - least),
+                            j, words, count);
             next[j] = path;
             minimum = lesser(minimum, path);
         }

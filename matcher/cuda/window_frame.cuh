@@ -57,13 +57,16 @@ __device__ Area path_region(const SolveJob<Cell>& job, const Area& core, int d)
 ///     low halves      0 1 2 3 4 5 6 7     8 9 ...           half - 1
 ///     high halves     half ...                          2 * half - 1
 ///
-/// In memory, word i of lane g lies at i * kLanes + g: lanes side by side.
+/// Matching costs take a byte: a lane's lie side by side, and it reads them at once. Sums are
+/// words. Those of the pixels that a warp has room for are interleaved, so that groups of lanes
+/// that work side by side write to different banks: word i of all of them, then word i + 1.
 template <int kLaneCount, int kWordCount>
 struct LaneGroup {
     static constexpr int kLanes = kLaneCount;
     static constexpr int kWords = kWordCount;
     static constexpr bool kWide = false;
     static constexpr int kGroupsPerWarp = kWarp / kLanes;
+    static constexpr int kCostWords = kWords / 2; ///< of matching costs, four in each
 
     __device__ static int lane() { return static_cast<int>(threadIdx.x) % kLanes; }
     __device__ static int group_in_warp()
@@ -71,8 +74,14 @@ struct LaneGroup {
         return static_cast<int>(threadIdx.x) % kWarp / kLanes;
     }
     __device__ static int first_word() { return lane() * kWords; }
-    /// Where word `j` of a pixel lies.
-    __device__ static int place(int j) { return j % kWords * kLanes + j / kWords; }
+    /// Where the sums of a row's pixel begin.
+    __device__ static int sums_of(int pixel, int)
+    {
+        const int lane = pixel * kLanes;
+        return lane / kWarp * kWarp * kWords + lane % kWarp;
+    }
+    /// Where word `j` of a pixel's sums lies, from there.
+    __device__ static int place(int j) { return j % kWords * kWarp + j / kWords; }
 
     /// The least half of all words of all lanes of the group, in both halves.
     __device__ static unsigned least_half(unsigned word)
@@ -99,6 +108,7 @@ struct LaneGroup {
 /// and lies at j.
 struct WideGroup : LaneGroup<kWarp, 1> {
     static constexpr bool kWide = true;
+    __device__ static int sums_of(int pixel, int words) { return pixel * words; }
 };
 
 /// Words of a pixel that a lane sees one after the other in rounds; one round but for

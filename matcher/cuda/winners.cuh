@@ -66,7 +66,7 @@ private:
     __device__ const unsigned* sums_at(int row, int col) const
     {
         return frame_.sums + (row - strip_.row) * job_.strips.sum_row +
-               (col - frame_.window.core.col) * job_.strips.pixel_stride;
+               Group::sums_of(col - frame_.window.core.col, frame_.words());
     }
 
     // Calls f(j, pair) for the words of this lane; what pads the range is dearer than all.
@@ -82,7 +82,7 @@ private:
                 if (Group::kWide && j >= words) {
                     return;
                 }
-                unsigned pair = sums[Group::kWide ? j : i * Group::kLanes + Group::lane()];
+                unsigned pair = sums[Group::kWide ? j : i * kWarp + Group::lane()];
                 if (frame_.is_padded()) {
                     pair |= (j < count ? 0U : kNone) | (j + words < count ? 0U : kNone << 16);
                 }

@@ -209,6 +209,11 @@ inline unsigned __vminu2(unsigned a, unsigned b)
     return hsgm::stand_in::by_field<16>(a, b,
                                         [](unsigned x, unsigned y) { return std::min(x, y); });
 }
+inline unsigned __vmaxu2(unsigned a, unsigned b)
+{
+    return hsgm::stand_in::by_field<16>(a, b,
+                                        [](unsigned x, unsigned y) { return std::max(x, y); });
+}
 inline unsigned __vminu4(unsigned a, unsigned b)
 {
     return hsgm::stand_in::by_field<8>(a, b,
@@ -225,6 +230,15 @@ inline unsigned __viaddmin_u16x2(unsigned a, unsigned b, unsigned c)
     const unsigned sum =
         hsgm::stand_in::by_field<16>(a, b, [](unsigned x, unsigned y) { return x + y; });
     return __vminu2(sum, c);
+}
+/// Two 16-bit numbers times the lower, or upper, two of four 8-bit ones, summed up.
+inline unsigned __dp2a_lo(unsigned a, unsigned b, unsigned sum)
+{
+    return sum + (a & 0xFFFFU) * (b & 0xFFU) + (a >> 16) * (b >> 8 & 0xFFU);
+}
+inline unsigned __dp2a_hi(unsigned a, unsigned b, unsigned sum)
+{
+    return __dp2a_lo(a, b >> 16, sum);
 }
 inline unsigned __vimin3_u16x2(unsigned a, unsigned b, unsigned c)
 {
