@@ -93,7 +93,8 @@ matcher::cuda::Devices chosen_devices(const DeviceChoice& choice, const std::str
         return devices;
     }
     if (devices.usable.empty()) {
-        throw BudgetError(fmt::format("{}, but {}; use auto or cpu", what, devices.why_none));
+        throw BudgetError(fmt::format("{}, but no CUDA device can be used: {}; use auto or cpu",
+                                      what, devices.why_none));
     }
     if (choice.number >= 0) {
         const std::size_t count = devices.usable.size();

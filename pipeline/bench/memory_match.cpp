@@ -5,6 +5,7 @@
 #include "tiling/pyramid.h"
 #include "tiling/tile_plan.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -121,12 +122,46 @@ void store(const matcher::TileMatch& tile, matcher::RefineInput& first)
     }
 }
 
+std::vector<Rect> cores_of(const tiling::TilePlan& plan)
+{
+    std::vector<Rect> cores;
+    for (int i = 0; i < plan.count(); ++i) {
+        cores.push_back(plan.core(i));
+    }
+    return cores;
+}
+
+// Who matches tiles: the processor, or one stream of a device.
+class TileWorker {
+public:
+    TileWorker(const Matcher& matcher, const matcher::CoarseSolution& coarse,
+               const tiling::TilePlan& plan, const matcher::cuda::DeviceInfo* device)
+        : matcher_(matcher), coarse_(coarse)
+    {
+        if (device != nullptr) {
+            device_ = matcher::cuda::make_device_matcher(
+                matcher, matcher::cuda::upload_coarse(matcher, coarse, *device), *device,
+                cores_of(plan));
+        }
+    }
+
+    matcher::TileMatch match(const Rect& core, std::span<const LevelImages> images) const
+    {
+        return device_ != nullptr ? device_->match_tile(core, images)
+                                  : matcher_.match_tile(core, images, coarse_);
+    }
+
+private:
+    const Matcher& matcher_;
+    const matcher::CoarseSolution& coarse_;
+    std::unique_ptr<matcher::cuda::DeviceMatcher> device_;
+};
+
 matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<LevelImages>& images,
-                                 const matcher::CoarseSolution& coarse, int tile_size_px,
+                                 const tiling::TilePlan& plan, const TileWorker& worker,
                                  matcher::MatchStatistics& work)
 {
     const auto& shape = matcher.pair().shape;
-    const tiling::TilePlan plan(shape.left, tile_size_px);
     const auto read =
         std::span(images).first(static_cast<std::size_t>(matcher.plan().windowed_levels()));
     matcher::RefineInput first;
@@ -134,7 +169,7 @@ matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<Level
         first = empty_first_pass(shape);
     }
     for (int i = 0; i < plan.count(); ++i) {
-        matcher::TileMatch tile = matcher.match_tile(plan.core(i), read, coarse);
+        matcher::TileMatch tile = worker.match(plan.core(i), read);
         work += tile.work;
         if (plan.count() == 1) {
             return taken(std::move(tile));
@@ -167,7 +202,7 @@ matcher::Refined second_pass(const Matcher& matcher, const matcher::RefineInput&
 } // namespace
 
 MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& options,
-                            int tile_size_px)
+                            int tile_size_px, const matcher::cuda::DeviceInfo* device)
 {
     MemoryMatch match;
     Lap lap;
@@ -191,14 +226,38 @@ MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& optio
     const auto top = static_cast<std::size_t>(matcher.plan().levels() - 1);
     const auto coarse = matcher.solve_coarse(images[top].left.pixels, images[top].right.pixels);
     match.work = work_of(*coarse);
+    const tiling::TilePlan tiles(traits.shape.left, tile_size_px);
+    const TileWorker worker(matcher, *coarse, tiles, device);
     match.seconds.coarse = lap.seconds();
-    auto first = match_tiles(matcher, images, *coarse, tile_size_px, match.work);
+    auto first = match_tiles(matcher, images, tiles, worker, match.work);
     match.seconds.windows = lap.seconds();
     first.left = std::move(images[0].left);
     first.right = std::move(images[0].right);
     match.result = second_pass(matcher, first);
     match.seconds.second = lap.seconds();
     return match;
+}
+
+std::optional<std::string> why_not(const matcher::PairShape& shape,
+                                   const matcher::Options& options, int tile_size_px,
+                                   const matcher::cuda::DeviceInfo& device)
+{
+    matcher::PairTraits traits;
+    traits.shape = shape;
+    traits.hmi = std::make_shared<matcher::HmiTable>();
+    const Matcher matcher(traits, options);
+    std::string why = refusal(matcher, device);
+    if (!why.empty()) {
+        return why;
+    }
+    const std::int64_t bytes =
+        matcher::cuda::shared_bytes(matcher) +
+        worker_bytes(matcher, device, cores_of(tiling::TilePlan(shape.left, tile_size_px)));
+    if (bytes > device.free_bytes) {
+        return fmt::format("needs {} MiB of the device, which has {} MiB free", bytes >> 20,
+                           device.free_bytes >> 20);
+    }
+    return std::nullopt;
 }
 
 std::int64_t memory_match_bytes(const matcher::PairShape& shape,

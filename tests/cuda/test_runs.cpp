@@ -81,3 +81,33 @@ TEST_CASE("the program tells of its devices, and refuses those that are not ther
     CHECK(refused.code == 4);
     CHECK_THAT(refused.err, Contains("'run.device' is 'cuda:7'") && Contains("count from 0"));
 }
+
+TEST_CASE("a benchmark measures the device beside the processor")
+{
+    const auto outcome = run_with_device({"bench",
+                                          "--device",
+                                          "cuda",
+                                          "--side",
+                                          "128",
+                                          "--disparities",
+                                          "16",
+                                          "--cost",
+                                          "census5x5,pairs5x5",
+                                          "--instructions",
+                                          "auto",
+                                          "--threads",
+                                          "1",
+                                          "--peers",
+                                          "none",
+                                          "--repeats",
+                                          "1",
+                                          "--set",
+                                          "matcher.levels=2",
+                                          "--set",
+                                          "matcher.window=32"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK_THAT(outcome.out, Contains("hsgm census5x5, cuda:0, not pruned") &&
+                                Contains("stand-in 0, windows alone") &&
+                                Contains("cost pairs5x5 is left to the processor"));
+}

@@ -26,6 +26,7 @@ public:
 
     std::size_t used() const { return used_; }
     std::size_t peak() const { return peak_; }
+    void forget_peak() { peak_ = used_; }
 
 private:
     struct Allocation {

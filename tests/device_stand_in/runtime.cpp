@@ -182,6 +182,7 @@ void reset()
     m.reports.clear();
     m.abort_on_report = true;
     m.lost = false;
+    m.memory.forget_peak();
 }
 
 void forbid_device(void* begin, std::size_t bytes)
