@@ -57,6 +57,10 @@ void add_defaults(CPLStringList& options, PixelType type)
             add_default(options, "PREDICTOR", is_floating(type) ? "3" : "2");
         }
     }
+    if (EQUAL(compression.c_str(), "ZSTD")) {
+        // Twice as fast as GDAL's choice of 9, for files that are 6 % larger.
+        add_default(options, "ZSTD_LEVEL", "3");
+    }
     add_default(options, "BIGTIFF", "IF_SAFER");
 }
 

@@ -25,7 +25,8 @@ struct RasterOptions {
     /// Of the values, for example "metre".
     std::string unit;
     /// `KEY=VALUE` as in `gdalinfo --format GTiff`; each replaces or joins the defaults:
-    /// tiles of 256 x 256, ZSTD (DEFLATE where GDAL lacks it), predictor, BIGTIFF=IF_SAFER.
+    /// tiles of 256 x 256, ZSTD of level 3 (DEFLATE where GDAL lacks it), predictor,
+    /// BIGTIFF=IF_SAFER.
     std::vector<std::string> creation_options;
 };
 

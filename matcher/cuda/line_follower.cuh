@@ -45,8 +45,8 @@ public:
     {
         const int steps = place_first();
         int last_tone = 0;
+        bool enters = !region_.contains(row_ - dr_, col_ - dc_);
         for (int step = 0; step < steps; ++step) {
-            const bool enters = !region_.contains(row_ - dr_, col_ - dc_);
             const int tone = job_.tone.at(row_, col_);
             if (step == 0 && !enters) {
                 last_tone = job_.tone.at(row_ - dr_, col_ - dc_);
@@ -60,11 +60,11 @@ public:
             state_.step(matching(), pair_of(static_cast<unsigned>(job_.p1)),
                         frame_.penalties[tone < before ? before - tone : tone - before],
                         job_.one);
-            if (add_up && active_ && frame_.window.core.contains(row_, col_)) {
+            if (add_up && active_ && is_in_core()) {
                 add_to_sums();
                 keep_line();
             }
-            advance();
+            enters = advance();
         }
         if (active_ && steps > 0) {
             if (to != nullptr) {
@@ -101,18 +101,31 @@ private:
         return (end - 1 - first) / step + 1;
     }
 
-    __device__ void advance()
+    // To the next pixel; whether a path enters there.
+    __device__ bool advance()
     {
         row_ += dr_;
         col_ += dc_;
-        if (dr_ != 0) {
-            while (col_ >= region_.col_end()) {
-                col_ -= region_.cols;
-            }
-            while (col_ < region_.col) {
-                col_ += region_.cols;
-            }
+        if (dr_ == 0 || is_between(col_, region_.col, region_.cols)) {
+            return false;
         }
+        while (col_ >= region_.col_end()) {
+            col_ -= region_.cols;
+        }
+        while (col_ < region_.col) {
+            col_ += region_.cols;
+        }
+        return true;
+    }
+
+    // Strips that add up lie in rows of the core.
+    __device__ bool is_in_core() const
+    {
+        return is_between(col_, frame_.window.core.col, frame_.window.core.cols);
+    }
+    __device__ static bool is_between(int at, int begin, int count)
+    {
+        return static_cast<unsigned>(at - begin) < static_cast<unsigned>(count);
     }
 
     __device__ int slot() const
@@ -188,9 +201,9 @@ private:
     __device__ void add_to_sums()
     {
         unsigned* const sums = frame_.sums + (row_ - strip_.row) * job_.strips.sum_row +
-                               Group::sums_of(col_ - frame_.window.core.col, frame_.words());
-        state_.each_word(
-            [sums](int j, unsigned& word) { atomicAdd(&sums[Group::place(j)], word); });
+                               Group::sums_of(col_ - frame_.window.core.col, frame_.words()) +
+                               (Group::kWide ? 0 : Group::lane());
+        state_.each_sum([sums](int at, unsigned word) { atomicAdd(&sums[at], word); });
     }
 
     __device__ void keep_line()

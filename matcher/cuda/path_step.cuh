@@ -35,6 +35,10 @@ struct PathState {
     unsigned cost[kWords];
     unsigned beyond[kWords]; ///< infinite where the range ends before
     unsigned least;
+    // At the ends of the range a half is missing, and the other is the first or last of the
+    // other lot of halves: which bytes to take of a word and of kInfinitePair.
+    unsigned before_bytes = Group::lane() == 0 ? 0x1054 : 0x3210;
+    unsigned after_bytes = Group::lane() == kLanes - 1 ? 0x7632 : 0x3210;
 
     __device__ PathState(unsigned*, int, int count)
     {
@@ -53,6 +57,17 @@ struct PathState {
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
             f(Group::first_word() + i, cost[i]);
+        }
+    }
+
+    /// Calls f(at, word) with the places of this lane's words among the sums of a pixel, from
+    /// the lane's first on.
+    template <typename F>
+    __device__ void each_sum(F f) const
+    {
+#pragma unroll
+        for (int i = 0; i < kWords; ++i) {
+            f(i * kWarp, cost[i]);
         }
     }
 
@@ -77,10 +92,11 @@ struct PathState {
 
     __device__ void find_least()
     {
-        unsigned word = cost[0];
+        static_assert(kWords % 2 == 0);
+        unsigned word = lesser(cost[0], cost[1]);
 #pragma unroll
-        for (int i = 1; i < kWords; ++i) {
-            word = lesser(word, cost[i]);
+        for (int i = 2; i < kWords; i += 2) {
+            word = lesser(word, cost[i], cost[i + 1]);
         }
         least = Group::least_half(word);
     }
@@ -90,8 +106,7 @@ struct PathState {
     /// the compiler does not know: a product and sum go through other units than the minima.
     __device__ void step(const unsigned* matching, unsigned p1, unsigned p2, unsigned one)
     {
-        // The words beside this lane's. At the ends of the range a half is missing, and the
-        // other is the first or last of the other lot of halves.
+        // The words beside this lane's.
         unsigned before = cost[kWords - 1];
         unsigned after = cost[0];
         if constexpr (kLanes > 1) {
@@ -99,15 +114,10 @@ struct PathState {
             before = __shfl_sync(kAllLanes, before, lane + kLanes - 1, kLanes);
             after = __shfl_sync(kAllLanes, after, lane + 1, kLanes);
         }
-        if (Group::lane() == 0) {
-            before = before << 16 | kInfinite;
-        }
-        if (Group::lane() == kLanes - 1) {
-            after = after >> 16 | kInfinite << 16;
-        }
+        before = __byte_perm(before, kInfinitePair, before_bytes);
+        after = __byte_perm(after, kInfinitePair, after_bytes);
         const unsigned jump = least + p2;
         const Costs costs(matching);
-        unsigned minimum = kInfinitePair;
 #pragma unroll
         for (int i = 0; i < kWords; ++i) {
             const unsigned next = i + 1 < kWords ? cost[i + 1] : after;
@@ -117,14 +127,7 @@ struct PathState {
             // No half borrows from the other: best >= least in both.
             cost[i] = costs.added(best + beyond[i] - least, i);
         }
-#pragma unroll
-        for (int i = 0; i + 1 < kWords; i += 2) {
-            minimum = lesser(minimum, cost[i], cost[i + 1]);
-        }
-        if constexpr (kWords % 2 == 1) {
-            minimum = lesser(minimum, cost[kWords - 1]);
-        }
-        least = Group::least_half(minimum);
+        find_least();
     }
 
     /// The matching costs of this lane, read at once.

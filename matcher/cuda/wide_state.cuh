@@ -31,6 +31,12 @@ struct WideState {
         }
     }
 
+    template <typename F>
+    __device__ void each_sum(F f)
+    {
+        each_word([&f](int j, unsigned& word) { f(j, word); });
+    }
+
     __device__ void begin()
     {
         each_word([](int, unsigned& word) { word = 0; });

@@ -77,8 +77,8 @@ struct LaneGroup {
     /// Where the sums of a row's pixel begin.
     __device__ static int sums_of(int pixel, int)
     {
-        const int lane = pixel * kLanes;
-        return lane / kWarp * kWarp * kWords + lane % kWarp;
+        const unsigned lane = static_cast<unsigned>(pixel) * kLanes;
+        return static_cast<int>(lane / kWarp * kWarp * kWords + lane % kWarp);
     }
     /// Where word `j` of a pixel's sums lies, from there.
     __device__ static int place(int j) { return j % kWords * kWarp + j / kWords; }

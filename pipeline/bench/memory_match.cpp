@@ -6,11 +6,15 @@
 #include "tiling/tile_plan.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/concurrent_queue.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 
 namespace hsgm::bench {
 
@@ -131,51 +135,73 @@ std::vector<Rect> cores_of(const tiling::TilePlan& plan)
     return cores;
 }
 
-// Who matches tiles: the processor, or one stream of a device.
+// Streams of a device: one computes while the other copies.
+int streams_for(const tiling::TilePlan& plan)
+{
+    return std::min(plan.count(), 2);
+}
+
+// Who matches tiles: the processor, or the streams of a device, each one tile at a time.
 class TileWorker {
 public:
     TileWorker(const Matcher& matcher, const matcher::CoarseSolution& coarse,
                const tiling::TilePlan& plan, const matcher::cuda::DeviceInfo* device)
         : matcher_(matcher), coarse_(coarse)
     {
-        if (device != nullptr) {
-            device_ = matcher::cuda::make_device_matcher(
-                matcher, matcher::cuda::upload_coarse(matcher, coarse, *device), *device,
-                cores_of(plan));
+        if (device == nullptr) {
+            return;
+        }
+        const auto on_device = matcher::cuda::upload_coarse(matcher, coarse, *device);
+        for (int i = 0; i < streams_for(plan); ++i) {
+            streams_.push_back(matcher::cuda::make_device_matcher(matcher, on_device, *device,
+                                                                  cores_of(plan)));
+            free_.push(streams_.back().get());
         }
     }
 
-    matcher::TileMatch match(const Rect& core, std::span<const LevelImages> images) const
+    matcher::TileMatch match(const Rect& core, std::span<const LevelImages> images)
     {
-        return device_ != nullptr ? device_->match_tile(core, images)
-                                  : matcher_.match_tile(core, images, coarse_);
+        if (streams_.empty()) {
+            return matcher_.match_tile(core, images, coarse_);
+        }
+        matcher::cuda::DeviceMatcher* stream = nullptr;
+        free_.pop(stream);
+        matcher::TileMatch match = stream->match_tile(core, images);
+        free_.push(stream);
+        return match;
     }
 
 private:
     const Matcher& matcher_;
     const matcher::CoarseSolution& coarse_;
-    std::unique_ptr<matcher::cuda::DeviceMatcher> device_;
+    std::vector<std::unique_ptr<matcher::cuda::DeviceMatcher>> streams_;
+    tbb::concurrent_bounded_queue<matcher::cuda::DeviceMatcher*> free_;
 };
 
 matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<LevelImages>& images,
-                                 const tiling::TilePlan& plan, const TileWorker& worker,
+                                 const tiling::TilePlan& plan, TileWorker& worker,
                                  matcher::MatchStatistics& work)
 {
     const auto& shape = matcher.pair().shape;
     const auto read =
         std::span(images).first(static_cast<std::size_t>(matcher.plan().windowed_levels()));
-    matcher::RefineInput first;
-    if (plan.count() > 1) {
-        first = empty_first_pass(shape);
-    }
-    for (int i = 0; i < plan.count(); ++i) {
-        matcher::TileMatch tile = worker.match(plan.core(i), read);
+    if (plan.count() == 1) {
+        matcher::TileMatch tile = worker.match(plan.core(0), read);
         work += tile.work;
-        if (plan.count() == 1) {
-            return taken(std::move(tile));
-        }
-        store(tile, first);
+        return taken(std::move(tile));
     }
+    matcher::RefineInput first = empty_first_pass(shape);
+    std::mutex storing;
+    // As many tiles at once as there are threads, as in a run. Least keys do not ask for order.
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, plan.count()),
+        [&](const tbb::blocked_range<int>& one) {
+            const matcher::TileMatch tile = worker.match(plan.core(one.begin()), read);
+            const std::lock_guard lock(storing);
+            work += tile.work;
+            store(tile, first);
+        },
+        tbb::simple_partitioner());
     return first;
 }
 
@@ -227,7 +253,7 @@ MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& optio
     const auto coarse = matcher.solve_coarse(images[top].left.pixels, images[top].right.pixels);
     match.work = work_of(*coarse);
     const tiling::TilePlan tiles(traits.shape.left, tile_size_px);
-    const TileWorker worker(matcher, *coarse, tiles, device);
+    TileWorker worker(matcher, *coarse, tiles, device);
     match.seconds.coarse = lap.seconds();
     auto first = match_tiles(matcher, images, tiles, worker, match.work);
     match.seconds.windows = lap.seconds();
@@ -250,9 +276,10 @@ std::optional<std::string> why_not(const matcher::PairShape& shape,
     if (!why.empty()) {
         return why;
     }
+    const tiling::TilePlan plan(shape.left, tile_size_px);
     const std::int64_t bytes =
         matcher::cuda::shared_bytes(matcher) +
-        worker_bytes(matcher, device, cores_of(tiling::TilePlan(shape.left, tile_size_px)));
+        streams_for(plan) * worker_bytes(matcher, device, cores_of(plan));
     if (bytes > device.free_bytes) {
         return fmt::format("needs {} MiB of the device, which has {} MiB free", bytes >> 20,
                            device.free_bytes >> 20);

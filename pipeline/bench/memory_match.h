@@ -28,8 +28,8 @@ struct MemoryMatch {
 
 /// Matches a pair from its pixels to its checked disparities without any file, on the
 /// threads of the caller's arena: what `hsgm match` computes, with the same bits. Tiles
-/// (0: one for the whole image) are matched one after the other, by the processor or by a
-/// stream of `device`.
+/// (0: one for the whole image) are matched as many at once as there are threads, or on
+/// two streams of `device`.
 /// Throws std::invalid_argument where options or shape are impossible, and
 /// matcher::cuda::DeviceError where the device fails.
 MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& options,

@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "pipeline/commands/confidence_report.h"
+#include "pipeline/commands/evaluate_dsm.h"
 #include "pipeline/stages/evaluate_stage.h"
 
 #include <CLI/CLI.hpp>
@@ -256,6 +257,7 @@ CLI::App* add_evaluate_command(CLI::App& app)
     seams->add_option("--tile", s->tile_px, "side of the tiles")->check(CLI::Range(2, 1 << 20));
     add_raster_options(*seams, *s);
     seams->callback([s] { run_seams(*s); });
+    add_evaluate_dsm(*evaluate);
     return evaluate;
 }
 

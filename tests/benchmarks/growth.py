@@ -138,11 +138,11 @@ def draw(result, folder):
                                     ("range", "disparities searched", "ranges", 1)):
         measured = result[key]
         xs = [m["side" if key == "sides" else "disparities"] for m in measured]
-        times = [m["seconds"] for m in measured]
+        times = [m["cpu_s"] for m in measured]
         linear = [times[0] * (x / xs[0]) ** power for x in xs]
         guide = [("in proportion to the pixels" if power == 2 else "in proportion", linear)]
         plot_svg.write(os.path.join(folder, f"growth-{name}.svg"), [
-            plot_svg.Chart("time of hsgm match, s", label, xs, times, True, guide),
+            plot_svg.Chart("CPU time of hsgm match, s", label, xs, times, True, guide),
             plot_svg.Chart("peak memory, MiB", label, xs, [m["peak_mib"] for m in measured], False)])
 
 

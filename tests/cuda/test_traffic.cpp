@@ -15,16 +15,13 @@ using namespace hsgm::matcher::cuda;
 constexpr int kSide = 4096;
 constexpr int kCount = 128;
 
-/// How many pixels have so little texture that they read the prior.
-constexpr double kFlat = 1.0 / 3;
-
 // Bytes a pixel and disparity of level 0. Neighbouring windows are solved at the same time, and
 // what they read in common is counted once; the two passes over a window are far apart, and
 // are counted both. Keys and what paths park between strips stay in the second level cache.
 struct Traffic {
     double checkpoints = 0; ///< of paths that go up: written once, read once
     double features = 0;    ///< made once, read in both passes
-    double coarse = 0;      ///< winners, prior and start lines, written and read
+    double coarse = 0;      ///< winners, prior and start lines: written once, read by passes
     double rest = 0;        ///< images, results, right-view keys
 
     double sum() const { return checkpoints + features + coarse + rest; }
@@ -61,13 +58,15 @@ void add_level(Traffic& t, const Options& o, const DeviceInfo& device, int level
     const double read = 2 * 8 + 1 + 1;
     const double both_passes = 2 * double(o.window_px + o.halo_px) / o.window_px;
     t.features += pixels * (made + read * both_passes);
-    if (level > 0) {
+    // What the coarser level left for this one; the coarsest was solved by the processor.
+    {
         Arena arena;
-        const auto store = lay_out_store<std::uint8_t>(arena, o, {side, side},
-                                                       {0, 0, side, side}, o.window_px, count);
-        const double prior = pixels * store.stride;
+        const int half = side / 2;
+        const auto store = lay_out_store<std::uint8_t>(
+            arena, o, {half, half}, {0, 0, half, half}, o.window_px, count / 2);
+        const double prior = double(half) * half * store.stride;
         const double others = static_cast<double>(arena.used()) - prior;
-        t.coarse += prior * (1 + kFlat) + others * 2;
+        t.coarse += prior * (1 + both_passes) + others * (1 + 2);
     }
     t.rest += pixels * 2 * 2; // images
 }
