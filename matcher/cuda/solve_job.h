@@ -40,10 +40,10 @@ struct TileArrays {
 /// Where a block keeps what, in bytes from the start of its shared memory; for the widest
 /// ranges, keys, costs and sums lie in the block's part of the scratch memory instead.
 struct StripLayout {
-    int rows = 0;         ///< of a strip
-    int words = 0;        ///< pairs of disparities of a pixel: half the padded range
-    int cost_pixel = 0;   ///< words from pixel to pixel
-    int cost_row = 0;     ///< words from row to row; skewed, so that banks do not clash
+    int rows = 0;       ///< of a strip
+    int words = 0;      ///< pairs of disparities of a pixel: half the padded range
+    int cost_pixel = 0; ///< words from pixel to pixel
+    int cost_row = 0;   ///< words from row to row; skewed, so that banks do not clash
     int sum_row = 0;
     int key_row = 0;
     int line_slots = 0; ///< columns of a path region at most

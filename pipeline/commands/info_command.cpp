@@ -22,9 +22,9 @@ void print_info()
                available_memory_bytes() >> 20);
     fmt::print("vectors   {}\n", matcher::vector_instructions());
     const auto devices = matcher::cuda::find_devices();
-    fmt::print("devices   cpu{}\n",
-               devices.usable.empty() ? fmt::format(" (no CUDA device: {})", devices.why_none)
-                                      : "");
+    fmt::print("devices   cpu{}\n", devices.usable.empty()
+                                        ? fmt::format(" (no CUDA device: {})", devices.why_none)
+                                        : "");
     for (const auto& device : devices.usable) {
         fmt::print("          cuda:{} {}, compute capability {}.{}, {} of {} MiB free\n",
                    device.number, device.name, device.capability / 10, device.capability % 10,
