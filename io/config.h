@@ -58,6 +58,8 @@ public:
     std::vector<double> numbers(const std::string& key, std::size_t count = 0);
 
     bool flag(const std::string& key, bool default_value);
+    /// What is written for a key, as YAML, whatever it is; empty where it is missing.
+    std::string yaml(const std::string& key);
     /// One of the words in `allowed`.
     std::string choice(const std::string& key, const std::string& default_value,
                        const std::vector<std::string>& allowed);
@@ -116,6 +118,14 @@ private:
     std::string name_;
 };
 
+/// A key with the value in force.
+struct ConfigValue {
+    std::string name; ///< "matcher.cost"; items of a list by number, "pairs.0.left"
+    std::string text;
+    bool is_file = false;  ///< an absolute path
+    bool is_image = false; ///< of an image
+};
+
 /// A configuration file: YAML with relative paths from its own folder. Use it in this order:
 /// load, `set` the overrides, read everything through `root`, `refuse_unknown`.
 class ConfigDocument {
@@ -135,11 +145,16 @@ public:
     /// The same from one text "KEY=VALUE".
     void set(const std::string& assignment);
 
+    /// Whether the file, with what was set, has a plain value at a dotted path.
+    bool is_scalar(const std::string& dotted) const;
+
     ConfigSection root();
     /// Throws ConfigError for the first key that nothing asked for, with the nearest known.
     void refuse_unknown() const;
     /// Everything that was read, defaults included, as YAML; paths are absolute.
     std::string effective_yaml() const;
+    /// The same as a list.
+    std::vector<ConfigValue> effective_values() const;
     const std::filesystem::path& folder() const;
 
 private:

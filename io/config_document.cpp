@@ -123,6 +123,21 @@ ConfigNode& step_into(ConfigNode& node, const std::string& part, const std::stri
                       describe(node) + " in " + node.place + ".");
 }
 
+void list_values(const ConfigNode& node, const std::string& name,
+                 std::vector<ConfigValue>& values)
+{
+    const std::string prefix = name.empty() ? "" : name + ".";
+    for (const ConfigNode::Entry& entry : node.entries) {
+        list_values(*entry.value, prefix + entry.key, values);
+    }
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+        list_values(*node.items[i], prefix + std::to_string(i), values);
+    }
+    if (node.kind == ConfigNode::Kind::scalar) {
+        values.push_back({name, node.text, node.is_file, node.is_image});
+    }
+}
+
 } // namespace
 
 ConfigDocument::ConfigDocument(std::shared_ptr<ConfigState> state) : state_(std::move(state)) {}
@@ -183,6 +198,15 @@ void ConfigDocument::set(const std::string& assignment)
     set(assignment.substr(0, equals), assignment.substr(equals + 1));
 }
 
+bool ConfigDocument::is_scalar(const std::string& dotted) const
+{
+    const ConfigNode* node = state_->given.get();
+    for (const std::string& part : split_path(dotted)) {
+        node = node == nullptr ? nullptr : node->find(part);
+    }
+    return node != nullptr && node->kind == ConfigNode::Kind::scalar;
+}
+
 ConfigSection ConfigDocument::root()
 {
     return ConfigSection(state_, state_->given.get(), &state_->effective, "");
@@ -196,6 +220,13 @@ void ConfigDocument::refuse_unknown() const
 std::string ConfigDocument::effective_yaml() const
 {
     return to_yaml(state_->effective);
+}
+
+std::vector<ConfigValue> ConfigDocument::effective_values() const
+{
+    std::vector<ConfigValue> values;
+    list_values(state_->effective, "", values);
+    return values;
 }
 
 const std::filesystem::path& ConfigDocument::folder() const

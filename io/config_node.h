@@ -26,6 +26,8 @@ struct ConfigNode {
     // Only in the tree of effective values:
     std::vector<std::string> known; // keys that the program asked for
     std::string default_text;       // shown where it differs from the value
+    bool is_file = false;           // a path
+    bool is_image = false;          // a path of an image that a run reads pixel by pixel
 
     static std::unique_ptr<ConfigNode> scalar(std::string text);
     ConfigNode* find(const std::string& key) const;

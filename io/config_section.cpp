@@ -123,6 +123,17 @@ void ConfigSection::record(const std::string& key, const std::string& value,
     node.default_text = value == default_value ? "" : default_value;
 }
 
+std::string ConfigSection::yaml(const std::string& key)
+{
+    const ConfigNode* node = find(key);
+    if (node == nullptr) {
+        return "";
+    }
+    std::string text = to_yaml(*node);
+    text.erase(text.find_last_not_of('\n') + 1);
+    return text;
+}
+
 std::string ConfigSection::name_of(const std::string& key) const
 {
     return name_.empty() || key.empty() ? name_ + key : name_ + "." + key;
@@ -162,6 +173,7 @@ std::string ConfigSection::note_path(const std::string& key, const std::string& 
     const std::string resolved = resolve(written);
     const bool ours = !is_virtual_path(resolved) && !has_driver_prefix(resolved);
     record(key, ours ? std::filesystem::absolute(resolved).string() : resolved, "");
+    effective_->at(key).is_file = true;
     return resolved;
 }
 
@@ -194,10 +206,12 @@ ImageSpec ConfigSection::image(const std::string& key)
     ImageSpec spec;
     if (node->kind == ConfigNode::Kind::scalar) {
         spec.path = path(key);
+        effective_->at(key).is_image = true;
         return spec;
     }
     ConfigSection part = section(key);
     spec.path = part.path("path");
+    part.effective_->at("path").is_image = true;
     spec.band = part.integer_or("band", "auto", std::nullopt, 1).value_or(0);
     if (part.has("nodata")) {
         spec.nodata =

@@ -50,6 +50,9 @@ void describe(GDALDatasetH dataset, const RasterOptions& options)
     for (const auto& [key, value] : options.metadata) {
         GDALSetMetadataItem(dataset, key.c_str(), value.c_str(), nullptr);
     }
+    for (const auto& [key, value] : options.rpc) {
+        GDALSetMetadataItem(dataset, key.c_str(), value.c_str(), "RPC");
+    }
     if (!options.band_descriptions.empty()) {
         GDALSetDescription(band, options.band_descriptions.front().c_str());
     }

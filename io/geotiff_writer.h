@@ -20,6 +20,8 @@ struct RasterOptions {
     GeoReference geo;
     /// Key and value, into the file's general metadata.
     std::map<std::string, std::string> metadata;
+    /// A camera model, as `rpc_items` gives it; empty: none.
+    std::map<std::string, std::string> rpc;
     /// The first one describes the writer's only band.
     std::vector<std::string> band_descriptions;
     /// Of the values, for example "metre".

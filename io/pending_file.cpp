@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace hsgm::io {
 
@@ -25,15 +26,21 @@ std::string folder_of(const std::string& path)
     return folder.empty() ? "." : folder.string();
 }
 
+std::string temporary_beginning(const std::filesystem::path& target)
+{
+    std::string name = ".";
+    name += target.stem().string() + ".part-";
+    return name;
+}
+
 /// ".dsm.part-4711-0.tif" beside "dsm.tif": hidden, on the same disk (a rename never crosses
 /// one), with the same ending (some drivers look at it), and one of a kind in this process.
 std::string temporary_name(const std::string& path)
 {
     static std::atomic<unsigned> counter{0};
     const std::filesystem::path target(path);
-    std::string name = ".";
-    name += target.stem().string() + ".part-" + std::to_string(::getpid()) + "-" +
-            std::to_string(counter++) + target.extension().string();
+    const std::string name = temporary_beginning(target) + std::to_string(::getpid()) + "-" +
+                             std::to_string(counter++) + target.extension().string();
     return (target.parent_path() / name).string();
 }
 
@@ -130,6 +137,21 @@ void PendingFile::publish()
     }
     if (real) {
         sync_to_disk(folder_of(final_path_), final_path_);
+    }
+}
+
+void remove_unpublished(const std::string& final_path)
+{
+    const std::string beginning = temporary_beginning(final_path);
+    std::error_code none;
+    std::vector<std::filesystem::path> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_of(final_path), none)) {
+        if (entry.path().filename().string().starts_with(beginning)) {
+            found.push_back(entry.path());
+        }
+    }
+    for (const auto& path : found) {
+        std::filesystem::remove(path, none);
     }
 }
 

@@ -32,6 +32,10 @@ private:
     bool published_ = false;
 };
 
+/// Removes hidden files that processes which were killed left of this output. Only where no
+/// process is writing it.
+void remove_unpublished(const std::string& final_path);
+
 /// Writes a small text file whole or not at all. Throws StorageError.
 void write_text_file(const std::string& path, std::string_view text);
 

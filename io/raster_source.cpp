@@ -211,6 +211,23 @@ GeoReference RasterSource::geo_reference() const
     return geo;
 }
 
+std::vector<std::string> RasterSource::files() const
+{
+    ErrorCollector errors;
+    std::vector<std::string> paths;
+    for (const Dataset* dataset : {&state_->dataset, &state_->mask_file}) {
+        if (*dataset == nullptr) {
+            continue;
+        }
+        char** list = GDALGetFileList(dataset->get());
+        for (int i = 0; i < CSLCount(list); ++i) {
+            paths.emplace_back(list[i]);
+        }
+        CSLDestroy(list);
+    }
+    return paths;
+}
+
 std::map<std::string, std::string> RasterSource::metadata(const std::string& domain) const
 {
     ErrorCollector errors;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace hsgm::io {
 
@@ -37,6 +38,10 @@ public:
     /// GDAL's metadata of one domain, as stored: "" is the general one, "RPC" holds rational
     /// polynomials. Empty where there is none.
     std::map<std::string, std::string> metadata(const std::string& domain) const;
+
+    /// The files that its pixels come from, as GDAL knows them: the image, a mask, what stands
+    /// beside it (headers, overviews, metadata).
+    std::vector<std::string> files() const;
 
     /// Reads `window` (inside the image) into `values`, a view of the window's size. Numbers
     /// are as stored: no scale or offset is applied. A pixel without a value becomes NaN; that

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
 namespace hsgm::io {
 
@@ -54,6 +55,20 @@ void read_item(const RpcItems& items, const std::string& key, std::span<double> 
     }
 }
 
+std::string text_of(std::span<const double> values)
+{
+    std::string text;
+    for (const double value : values) {
+        char digits[40];
+        const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
+        if (!text.empty()) {
+            text += ' ';
+        }
+        text.append(digits, end);
+    }
+    return text;
+}
+
 } // namespace
 
 RpcMetadata rpc_from_items(const RpcItems& items, const std::string& origin)
@@ -84,6 +99,25 @@ RpcMetadata rpc_from_items(const RpcItems& items, const std::string& origin)
     read_item(items, "SAMP_NUM_COEFF", rpc.samp_num, origin);
     read_item(items, "SAMP_DEN_COEFF", rpc.samp_den, origin);
     return rpc;
+}
+
+RpcItems rpc_items(const RpcMetadata& rpc)
+{
+    const auto one = [](double value) { return text_of({&value, 1}); };
+    return {{"LINE_OFF", one(rpc.line_off)},
+            {"SAMP_OFF", one(rpc.samp_off)},
+            {"LAT_OFF", one(rpc.lat_off)},
+            {"LONG_OFF", one(rpc.long_off)},
+            {"HEIGHT_OFF", one(rpc.height_off)},
+            {"LINE_SCALE", one(rpc.line_scale)},
+            {"SAMP_SCALE", one(rpc.samp_scale)},
+            {"LAT_SCALE", one(rpc.lat_scale)},
+            {"LONG_SCALE", one(rpc.long_scale)},
+            {"HEIGHT_SCALE", one(rpc.height_scale)},
+            {"LINE_NUM_COEFF", text_of(rpc.line_num)},
+            {"LINE_DEN_COEFF", text_of(rpc.line_den)},
+            {"SAMP_NUM_COEFF", text_of(rpc.samp_num)},
+            {"SAMP_DEN_COEFF", text_of(rpc.samp_den)}};
 }
 
 std::optional<RpcMetadata> stored_rpc(const RasterSource& image)

@@ -3,6 +3,7 @@
 #include "io/raster_source.h"
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -39,6 +40,10 @@ struct RpcMetadata {
 /// beside it, in a DIMAP product. Nothing where there is none. Throws InputError for one that
 /// is incomplete.
 std::optional<RpcMetadata> stored_rpc(const RasterSource& image);
+
+/// The values of a model by the keys of GDAL's RPC domain, each number with as many digits as
+/// bring it back: what `RasterOptions::rpc` takes.
+std::map<std::string, std::string> rpc_items(const RpcMetadata& rpc);
 
 /// The model of a file given by name: _RPC.TXT ("LINE_OFF: 12"), .geom of OSSIM or OTB,
 /// .RPB ("lineOffset = 12;") or DIMAP's RPC_*.XML, told apart by what they hold. The terms of

@@ -48,9 +48,34 @@ bool all_zero(std::span<const std::byte> bytes)
 } // namespace
 
 ScratchFile::ScratchFile(const std::filesystem::path& path, std::int64_t bytes,
-                         std::span<const std::byte> fill)
-    : path_(path), fd_(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600))
+                         std::span<const std::byte> fill, ScratchLife life)
+    : path_(path), keep_(life != ScratchLife::temporary)
 {
+    if (life == ScratchLife::existing) {
+        open_existing(bytes);
+    } else {
+        make(bytes, fill);
+    }
+}
+
+void ScratchFile::open_existing(std::int64_t bytes)
+{
+    fd_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
+    if (fd_ < 0) {
+        fail("open", errno);
+    }
+    const off_t length = ::lseek(fd_, 0, SEEK_END);
+    if (length != bytes) {
+        ::close(fd_);
+        throw StorageError("The scratch file " + path_.string() + " has " +
+                           std::to_string(length) + " bytes instead of " +
+                           std::to_string(bytes) + ": somebody changed it.");
+    }
+}
+
+void ScratchFile::make(std::int64_t bytes, std::span<const std::byte> fill)
+{
+    fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (fd_ < 0) {
         fail("make", errno);
     }
@@ -60,6 +85,7 @@ ScratchFile::ScratchFile(const std::filesystem::path& path, std::int64_t bytes,
             fill_with(fill, bytes);
         }
     } catch (...) {
+        keep_ = false;
         remove(); // a constructor that throws has no destructor to clean up
         throw;
     }
@@ -71,7 +97,7 @@ ScratchFile::~ScratchFile()
 }
 
 ScratchFile::ScratchFile(ScratchFile&& other) noexcept
-    : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1))
+    : path_(std::move(other.path_)), keep_(other.keep_), fd_(std::exchange(other.fd_, -1))
 {
 }
 
@@ -79,7 +105,9 @@ void ScratchFile::remove() noexcept
 {
     if (fd_ >= 0) {
         ::close(fd_);
-        ::unlink(path_.c_str());
+        if (!keep_) {
+            ::unlink(path_.c_str());
+        }
         fd_ = -1;
     }
 }
@@ -142,6 +170,14 @@ void ScratchFile::read(std::int64_t offset, std::byte* data, std::size_t bytes) 
         offset += n;
         data += n;
         bytes -= static_cast<std::size_t>(n);
+    }
+}
+
+void ScratchFile::sync()
+{
+    // File systems that cannot do that answer EINVAL, which is no failure of ours.
+    if (::fdatasync(fd_) != 0 && errno != EINVAL) {
+        fail("bring to the disk", errno);
     }
 }
 

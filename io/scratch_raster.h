@@ -13,14 +13,22 @@
 
 namespace hsgm::io {
 
-/// A file of fixed length whose room is reserved when it is made. Removed when destroyed.
-/// Reads and writes may run side by side where their ranges do not meet.
+/// How long a scratch file lives.
+enum class ScratchLife {
+    temporary, ///< made anew, removed when destroyed
+    kept,      ///< made anew, stays for a later process
+    existing,  ///< kept by an earlier process; stays
+};
+
+/// A file of fixed length whose room is reserved when it is made. Reads and writes may run
+/// side by side where their ranges do not meet.
 class ScratchFile {
 public:
-    /// Makes a new file of copies of `fill` (its length divides `bytes`). Throws StorageError,
-    /// saying how many bytes are needed and how many are free.
+    /// Makes a new file of copies of `fill` (its length divides `bytes`), or opens an existing
+    /// one of that length. Throws StorageError: where room is missing, saying how many bytes
+    /// are needed and how many are free.
     ScratchFile(const std::filesystem::path& path, std::int64_t bytes,
-                std::span<const std::byte> fill);
+                std::span<const std::byte> fill, ScratchLife life = ScratchLife::temporary);
     ~ScratchFile();
     ScratchFile(ScratchFile&& other) noexcept;
     ScratchFile& operator=(ScratchFile&&) = delete;
@@ -28,16 +36,21 @@ public:
     /// Both throw StorageError with path and the system's message.
     void read(std::int64_t offset, std::byte* data, std::size_t bytes) const;
     void write(std::int64_t offset, const std::byte* data, std::size_t bytes);
+    /// Returns when everything written so far is on the disk. Throws StorageError.
+    void sync();
 
     const std::filesystem::path& path() const { return path_; }
 
 private:
+    void open_existing(std::int64_t bytes);
+    void make(std::int64_t bytes, std::span<const std::byte> fill);
     void reserve(std::int64_t bytes);
     void fill_with(std::span<const std::byte> fill, std::int64_t bytes);
     void remove() noexcept;
     [[noreturn]] void fail(const std::string& what, int code) const;
 
     std::filesystem::path path_;
+    bool keep_;
     int fd_ = -1;
 };
 
@@ -49,11 +62,12 @@ class ScratchRaster {
     static_assert(std::is_trivially_copyable_v<T>, "pixels are stored as their bytes");
 
 public:
-    /// Every pixel starts as `fill`. Throws StorageError where the room is missing.
+    /// Every pixel of a new one starts as `fill`. Throws StorageError where the room is
+    /// missing, or an existing one is not there in full length.
     ScratchRaster(const std::filesystem::path& folder, const std::string& name,
-                  tiling::Size size, T fill = T{})
+                  tiling::Size size, T fill = T{}, ScratchLife life = ScratchLife::temporary)
         : size_(size), file_(folder / name, size.area() * static_cast<std::int64_t>(sizeof(T)),
-                             std::as_bytes(std::span<const T>(&fill, 1)))
+                             std::as_bytes(std::span<const T>(&fill, 1)), life)
     {
     }
 
@@ -75,6 +89,9 @@ public:
             file_.write(offset, reinterpret_cast<const std::byte*>(run), bytes);
         });
     }
+
+    /// Returns when everything written so far is on the disk. Throws StorageError.
+    void sync() { file_.sync(); }
 
 private:
     /// One run per row, or one in all where rows follow each other both in file and memory.

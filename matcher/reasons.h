@@ -16,6 +16,7 @@ enum Reason : std::uint16_t {
     kInconsistent = 1 << 4, ///< left and right view disagree (mismatch)
     kSpeckle = 1 << 5,      ///< part of a patch too small to be believed
     kUncertain = 1 << 6,    ///< less confident than was asked for
+    kFailedTile = 1 << 7,   ///< its tile could not be matched; the run's ledger says why
     // Bits from 8 on inform about a pixel that may well have a value.
     kLowTexture = 1 << 8, ///< flat neighbourhood: the value leans on what lies around it
     kRangeEnd = 1 << 9,   ///< the first or last disparity asked for: the truth may lie beyond
@@ -26,7 +27,7 @@ enum Reason : std::uint16_t {
 constexpr std::uint16_t kInvalidating = 0x00FF;
 
 /// Bit and name of every reason, for metadata and documentation.
-constexpr std::array<std::pair<Reason, std::string_view>, 10> kReasonNames{{
+constexpr std::array<std::pair<Reason, std::string_view>, 11> kReasonNames{{
     {kOutside, "outside"},
     {kNodataLeft, "nodata_left"},
     {kNodataRight, "nodata_right"},
@@ -34,6 +35,7 @@ constexpr std::array<std::pair<Reason, std::string_view>, 10> kReasonNames{{
     {kInconsistent, "inconsistent"},
     {kSpeckle, "speckle"},
     {kUncertain, "uncertain"},
+    {kFailedTile, "failed_tile"},
     {kLowTexture, "low_texture"},
     {kRangeEnd, "range_end"},
     {kInterpolated, "interpolated"},

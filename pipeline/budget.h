@@ -20,8 +20,9 @@ struct Budget {
     std::int64_t coarse_bytes = 0;   ///< solving the coarsest level whole
     std::int64_t tiles_bytes = 0;    ///< all tiles in flight
     std::int64_t refine_bytes = 0;   ///< second pass and writing
-    std::int64_t scratch_disk_bytes = 0;
-    std::int64_t output_disk_bytes = 0; ///< uncompressed: an upper bound
+    std::int64_t pyramid_disk_bytes = 0;
+    std::int64_t scratch_disk_bytes = 0; ///< pyramids and first-pass results
+    std::int64_t output_disk_bytes = 0;  ///< uncompressed: an upper bound
 };
 
 /// Memory of this machine, or of the cgroup that limits it, in bytes.

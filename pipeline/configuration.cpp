@@ -97,6 +97,8 @@ RunOptions read_run(ConfigSection section)
     run.threads = section.integer_or("threads", "auto", std::nullopt, 1, 1024).value_or(0);
     const auto memory = section.byte_amount("memory", "80%");
     run.memory_bytes = memory.of(available_memory_bytes());
+    run.tile_limit_s =
+        section.number_or("tile_limit_s", "off", std::nullopt, 1e-3, 1e9).value_or(0);
     run.device = read_device(section);
     return run;
 }

@@ -16,10 +16,16 @@ void request_stop() noexcept
     stop_requested.store(true);
 }
 
+bool stop_is_requested() noexcept
+{
+    return stop_requested.load();
+}
+
 void check_stop()
 {
-    if (stop_requested.load()) {
-        throw Interrupted("interrupted: every output is whole, or as it was before");
+    if (stop_is_requested()) {
+        throw Interrupted("interrupted: every output is whole, or as it was before; --resume "
+                          "goes on with a run");
     }
 }
 

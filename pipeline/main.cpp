@@ -1,26 +1,24 @@
 #include "io/error.h"
 #include "io/gdal_session.h"
 #include "pipeline/budget.h"
+#include "pipeline/commands/batch_command.h"
 #include "pipeline/commands/bench_command.h"
 #include "pipeline/commands/evaluate_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
+#include "pipeline/commands/status_command.h"
 #include "pipeline/commands/synth_command.h"
 #include "pipeline/commands/usage.h"
 #include "pipeline/error.h"
+#include "pipeline/freed_memory.h"
+#include "pipeline/run_log.h"
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <csignal>
 #include <exception>
-#include <limits>
 #include <new>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace {
 
@@ -30,6 +28,7 @@ enum ExitCode {
     kUsage = 2,
     kInput = 3,
     kBudget = 4,
+    kFailedTiles = 5,
     kStorage = 6,
     kInterrupted = 130,
 };
@@ -40,7 +39,8 @@ constexpr const char* kHelp = R"(A first result in two commands:
 
 Each command has its own help with examples: hsgm match --help
 Exit codes: 0 done, 1 unexpected, 2 usage or configuration, 3 input data, 4 does not fit the
-memory or the device is absent, 6 storage, 130 interrupted. See docs/exit-codes.md.)";
+memory or the device is absent, 5 finished with failed tiles, 6 storage, 130 interrupted.
+See docs/exit-codes.md.)";
 
 // A second signal ends the program at once.
 void on_signal(int signal)
@@ -70,6 +70,8 @@ int run(CLI::App& app, int argc, char** argv)
         return fail(kInput, error.what());
     } catch (const hsgm::pipeline::BudgetError& error) {
         return fail(kBudget, error.what());
+    } catch (const hsgm::pipeline::FailedTiles& error) {
+        return fail(kFailedTiles, error.what());
     } catch (const hsgm::io::StorageError& error) {
         return fail(kStorage, error.what());
     } catch (const hsgm::pipeline::Interrupted& error) {
@@ -81,25 +83,15 @@ int run(CLI::App& app, int argc, char** argv)
     }
 }
 
-// Tiles take and free the same tens of megabytes over and over. The C library would give
-// them back to the system each time and get them anew, cleared: a tenth of the computing time.
-void keep_freed_memory()
-{
-#ifdef __GLIBC__
-    constexpr int kLargestAllowed = 32 << 20; // glibc's own limit of this setting
-    mallopt(M_MMAP_THRESHOLD, kLargestAllowed);
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
-}
-
 } // namespace
 
 int main(int argc, char** argv)
 {
-    keep_freed_memory();
+    hsgm::pipeline::keep_freed_memory();
     // Results go to standard output, everything about them to standard error.
-    spdlog::set_default_logger(spdlog::stderr_color_mt("hsgm"));
-    spdlog::set_pattern("%^%l%$: %v");
+    std::string log_level = "info";
+    bool log_json = false;
+    hsgm::pipeline::start_logging(log_level, log_json);
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     hsgm::io::initialise_gdal(hsgm::pipeline::gdal_cache_bytes());
@@ -109,15 +101,17 @@ int main(int argc, char** argv)
     app.footer(kHelp);
     app.set_version_flag("--version", std::string("hsgm ") + HSGM_VERSION);
     app.require_subcommand(1);
-    std::string log_level = "info";
     app.add_option("--log-level", log_level, "debug, info, warn, error or off")
-        ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
-        ->each([](const std::string& level) {
-            spdlog::set_level(spdlog::level::from_str(level));
-        });
+        ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
+    app.add_flag("--log-json", log_json, "say everything as JSON, one object a line");
+    // Before any command, which runs when all of the line is read.
+    app.parse_complete_callback([&] { hsgm::pipeline::start_logging(log_level, log_json); });
     hsgm::pipeline::add_match_command(app);
     hsgm::pipeline::add_run_command(app);
     hsgm::pipeline::add_plan_command(app);
+    hsgm::pipeline::add_batch_command(app);
+    hsgm::pipeline::add_status_command(app);
+    hsgm::pipeline::add_report_command(app);
     hsgm::pipeline::add_evaluate_command(app);
     hsgm::pipeline::add_synth_command(app);
     hsgm::pipeline::add_info_command(app);

@@ -13,36 +13,22 @@ struct TileTask {
     int index = 0;
     tiling::Rect core;
     std::vector<matcher::LevelImages> images;
+    /// Name of the worker that failed at this tile before: another one shall try, where there
+    /// is one.
+    std::string avoid;
 };
 
 /// Anything that matches tiles. All kinds give the same bits. A worker serves one tile at a
-/// time; the graph asks each from one thread at once, not always the same one.
+/// time, on a thread that the pool gives it. What `match` throws fails the tile, not the run.
 class MatchWorker {
 public:
     virtual ~MatchWorker() = default;
-    /// For logs: "cpu 0".
+    /// For logs and the ledger, different for each: "cpu 0".
     virtual std::string name() const = 0;
     virtual matcher::TileMatch match(const TileTask& task) = 0;
-};
-
-/// Matches on the processor; the windows of its tile are shared out to the TBB arena.
-class CpuWorker final : public MatchWorker {
-public:
-    CpuWorker(int number, const matcher::Matcher& matcher,
-              const matcher::CoarseSolution& coarse)
-        : number_(number), matcher_(matcher), coarse_(coarse)
-    {
-    }
-    std::string name() const override { return "cpu " + std::to_string(number_); }
-    matcher::TileMatch match(const TileTask& task) override
-    {
-        return matcher_.match_tile(task.core, task.images, coarse_);
-    }
-
-private:
-    int number_;
-    const matcher::Matcher& matcher_;
-    const matcher::CoarseSolution& coarse_;
+    /// Asks a `match` under way to give up soon, by an exception. From any thread, at any time.
+    /// A worker that cannot is waited for, or left behind where it exceeds its time limit.
+    virtual void cancel() {}
 };
 
 } // namespace hsgm::pipeline

@@ -2,10 +2,9 @@
 
 #include "pipeline/error.h"
 
-#include <tbb/concurrent_queue.h>
 #include <tbb/flow_graph.h>
 
-#include <stdexcept>
+#include <utility>
 
 namespace hsgm::pipeline {
 
@@ -14,45 +13,75 @@ namespace flow = tbb::flow;
 namespace {
 
 // Tiles travel as pointers: flow graph messages are copied.
-using TaskPointer = std::shared_ptr<TileTask>;
-struct Finished {
-    int tile;
-    matcher::TileMatch match;
+struct ReadTile {
+    std::shared_ptr<const TileTask> task;
+    MatchOutcome failed; // where reading failed
 };
-using FinishedPointer = std::shared_ptr<Finished>;
+using ReadPointer = std::shared_ptr<ReadTile>;
+using OutcomePointer = std::shared_ptr<MatchOutcome>;
+using MatchNode = flow::async_node<ReadPointer, OutcomePointer>;
 
-// The workers that wait for a tile. There are as many match slots as workers, so one is
-// always free when a slot asks.
-class FreeWorkers {
-public:
-    explicit FreeWorkers(std::span<const std::unique_ptr<MatchWorker>> workers)
-    {
-        for (const auto& worker : workers) {
-            free_.push(worker.get());
-        }
+ReadPointer read_tile(const TileSteps& steps, int tile)
+{
+    auto read = std::make_shared<ReadTile>();
+    read->failed.tile = tile;
+    read->failed.started = std::chrono::steady_clock::now();
+    try {
+        read->task = std::make_shared<const TileTask>(steps.read(tile));
+    } catch (...) {
+        read->failed.error = std::current_exception();
     }
-    FinishedPointer match(const TileTask& task)
-    {
-        MatchWorker* worker = nullptr;
-        if (!free_.try_pop(worker)) {
-            throw std::logic_error("tile graph: more matching slots than workers");
-        }
-        auto finished = std::make_shared<Finished>(Finished{task.index, worker->match(task)});
-        free_.push(worker);
-        return finished;
-    }
+    return read;
+}
 
-private:
-    tbb::concurrent_queue<MatchWorker*> free_;
-};
+// The graph waits for what it gives away, and takes it back from the pool's threads.
+void send_to_pool(const ReadPointer& read, MatchNode::gateway_type& gateway, WorkerPool& pool)
+{
+    if (read->failed.error) {
+        gateway.try_put(std::make_shared<MatchOutcome>(std::move(read->failed)));
+        return;
+    }
+    gateway.reserve_wait();
+    pool.submit(std::move(read->task), [&gateway](MatchOutcome outcome) {
+        gateway.try_put(std::make_shared<MatchOutcome>(std::move(outcome)));
+        gateway.release_wait();
+    });
+}
+
+// Whether a failure concerns more than its tile.
+bool ends_the_run(const std::exception_ptr& error)
+{
+    try {
+        std::rethrow_exception(error);
+    } catch (const Interrupted&) {
+        return true;
+    } catch (const NoWorkerLeft&) {
+        return true;
+    } catch (...) {
+        return false;
+    }
+}
+
+void finish(const TileSteps& steps, MatchOutcome& outcome)
+{
+    check_stop();
+    if (outcome.error && (!steps.ended || ends_the_run(outcome.error))) {
+        std::rethrow_exception(outcome.error);
+    }
+    if (!outcome.error) {
+        steps.write(outcome.tile, std::exchange(outcome.match, {}));
+    }
+    if (steps.ended) {
+        steps.ended(outcome);
+    }
+}
 
 } // namespace
 
-void run_tiles(std::span<const int> sequence, const TileSteps& steps,
-               std::span<const std::unique_ptr<MatchWorker>> workers, int tiles_in_flight)
+void run_tiles(std::span<const int> sequence, const TileSteps& steps, WorkerPool& pool,
+               int tiles_in_flight)
 {
     flow::graph graph;
-    FreeWorkers free_workers(workers);
     std::size_t next = 0;
     flow::input_node<int> tiles(graph, [&](tbb::flow_control& control) {
         check_stop();
@@ -63,16 +92,15 @@ void run_tiles(std::span<const int> sequence, const TileSteps& steps,
         return sequence[next++];
     });
     flow::limiter_node<int> limiter(graph, static_cast<std::size_t>(tiles_in_flight));
-    flow::function_node<int, TaskPointer> read(graph, flow::unlimited, [&](int tile) {
-        return std::make_shared<TileTask>(steps.read(tile));
-    });
-    flow::function_node<TaskPointer, FinishedPointer> match(
-        graph, workers.size(),
-        [&](const TaskPointer& task) { return free_workers.match(*task); });
-    flow::function_node<FinishedPointer, flow::continue_msg> write(
-        graph, flow::serial, [&](const FinishedPointer& finished) {
-            check_stop();
-            steps.write(finished->tile, std::move(finished->match));
+    flow::function_node<int, ReadPointer> read(
+        graph, flow::unlimited, [&](int tile) { return read_tile(steps, tile); });
+    MatchNode match(graph, flow::unlimited,
+                    [&](const ReadPointer& tile, MatchNode::gateway_type& gateway) {
+                        send_to_pool(tile, gateway, pool);
+                    });
+    flow::function_node<OutcomePointer, flow::continue_msg> write(
+        graph, flow::serial, [&](const OutcomePointer& outcome) {
+            finish(steps, *outcome);
             return flow::continue_msg();
         });
     flow::make_edge(tiles, limiter);

@@ -5,6 +5,7 @@
 #include "pipeline/commands/range_argument.h"
 #include "pipeline/commands/reporting.h"
 #include "pipeline/configuration.h"
+#include "pipeline/error.h"
 #include "pipeline/stages/match_stage.h"
 
 #include <CLI/CLI.hpp>
@@ -63,8 +64,11 @@ void run(const Arguments& arguments)
     const PlannedJob planned = plan_job(job);
     log_plan(planned);
     ProgressLog progress;
-    const MatchSummary summary = run_job(planned, std::ref(progress));
-    log_summary(summary, planned);
+    const RunResult result = run_job(planned, RunManner{}, std::ref(progress));
+    log_summary(result.summary.value(), planned);
+    if (!result.failed.empty()) {
+        throw FailedTiles(failure_sentence(result));
+    }
 }
 
 } // namespace

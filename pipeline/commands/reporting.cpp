@@ -1,12 +1,14 @@
 #include "pipeline/commands/reporting.h"
 
 #include "matcher/reasons.h"
+#include "pipeline/run_log.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <string>
 
 namespace hsgm::pipeline {
@@ -144,12 +146,15 @@ void print_plan(const PlannedJob& planned, bool json)
 }
 
 ProgressLog::ProgressLog()
-    : start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) != 0)
+    : start_(std::chrono::steady_clock::now()),
+      terminal_(isatty(STDERR_FILENO) != 0 && !logs_json())
 {
 }
 
-void ProgressLog::operator()(int done, int all)
+void ProgressLog::operator()(const TileProgress& progress)
 {
+    const int done = progress.done;
+    const int all = progress.all;
     const int percent = static_cast<int>(100LL * done / all);
     const int step = terminal_ ? 1 : 10;
     if (percent / step == last_percent_ / step && done != all) {
@@ -157,14 +162,21 @@ void ProgressLog::operator()(int done, int all)
     }
     last_percent_ = percent;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const double left_s = elapsed.count() / done * (all - done);
+    const double pixels_s =
+        static_cast<double>(progress.pixels_done) / std::max(elapsed.count(), 1e-6);
+    const double left_s = static_cast<double>(progress.pixels_all - progress.pixels_done) /
+                          std::max(pixels_s, 1.0);
+    const std::string text =
+        fmt::format("{} of {} tiles, {} in flight, {:.2f} Mpx/s, {:.0f} s left{}", done, all,
+                    progress.in_flight, pixels_s / 1e6, done == all ? 0.0 : left_s,
+                    progress.failed > 0 ? fmt::format(", {} failed", progress.failed) : "");
     if (!terminal_) {
-        spdlog::info("{} of {} tiles, {:.0f} s left", done, all, left_s);
+        spdlog::info("{}", text);
         return;
     }
     const std::string bar(static_cast<std::size_t>(percent / 4), '#');
-    fmt::print(stderr, "\r[{:<25}] {:3} %  {} of {} tiles, {:.0f} s left   {}", bar, percent,
-               done, all, left_s, done == all ? "\n" : "");
+    fmt::print(stderr, "\r[{:<25}] {:3} %  {}   {}", bar, percent, text,
+               done == all ? "\n" : "");
 }
 
 } // namespace hsgm::pipeline

@@ -15,11 +15,12 @@ void log_summary(const MatchSummary& summary, const PlannedJob& planned);
 /// The plan on standard output, as a table or as JSON.
 void print_plan(const PlannedJob& planned, bool json);
 
-/// Shows the tiles done: a bar with the time left on a terminal, plain lines elsewhere.
+/// Shows the tiles done, pace and time left: a bar on a terminal, a plain line for every tenth
+/// elsewhere.
 class ProgressLog {
 public:
     ProgressLog();
-    void operator()(int done, int all);
+    void operator()(const TileProgress& progress);
 
 private:
     std::chrono::steady_clock::time_point start_;

@@ -3,13 +3,16 @@
 #include "pipeline/commands/reporting.h"
 
 #include "io/error.h"
-#include "io/pending_file.h"
+#include "pipeline/commands/shard_option.h"
 #include "pipeline/configuration.h"
+#include "pipeline/error.h"
+#include "pipeline/stages/fingerprint_stage.h"
 #include "pipeline/stages/match_stage.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <system_error>
 
@@ -39,12 +42,22 @@ Opens the inputs, reads no pixels, and tells levels, tiles, memory and disk of t
 struct Arguments {
     std::string config;
     std::string output;
+    std::string shard;
+    std::string stage = "all";
+    bool resume = false;
+    bool restart = false;
+    bool take_over = false;
     bool dry_run = false;
     bool json = false;
     Knobs knobs;
 };
 
-Configuration load(const Arguments& arguments)
+struct Loaded {
+    io::ConfigDocument document;
+    Configuration configuration;
+};
+
+Loaded load(const Arguments& arguments)
 {
     auto document = io::ConfigDocument::load(arguments.config);
     arguments.knobs.apply(document);
@@ -53,7 +66,26 @@ Configuration load(const Arguments& arguments)
         document.set("output.folder",
                      "'" + std::filesystem::absolute(arguments.output).string() + "'");
     }
-    return read_configuration(document);
+    const Configuration configuration = read_configuration(document);
+    return {document, configuration};
+}
+
+RunManner manner_of(const Arguments& arguments, const Loaded& loaded)
+{
+    static const std::map<std::string, RunStage> kStages{{"all", RunStage::all},
+                                                         {"coarse", RunStage::coarse},
+                                                         {"tiles", RunStage::tiles},
+                                                         {"assemble", RunStage::assemble}};
+    RunManner manner;
+    manner.folder = loaded.configuration.folder;
+    manner.stage = kStages.at(arguments.stage);
+    manner.shard = shard_from(arguments.shard);
+    manner.resume = arguments.resume || is_requeued();
+    manner.restart = arguments.restart;
+    manner.take_over = arguments.take_over;
+    manner.used_yaml = loaded.configuration.used_yaml;
+    manner.validate();
+    return manner;
 }
 
 void make_folder(const std::filesystem::path& folder)
@@ -68,20 +100,25 @@ void make_folder(const std::filesystem::path& folder)
 
 void run(const Arguments& arguments)
 {
-    const Configuration configuration = load(arguments);
-    const PlannedJob planned = plan_job(configuration.job);
+    const Loaded loaded = load(arguments);
+    RunManner manner = manner_of(arguments, loaded);
+    const PlannedJob planned = plan_job(loaded.configuration.job);
     if (arguments.dry_run) {
         print_plan(planned, false);
         return;
     }
     log_plan(planned);
-    make_folder(configuration.folder);
+    manner.settings = settings_of(loaded.document);
+    make_folder(manner.folder);
     ProgressLog progress;
-    const MatchSummary summary = run_job(planned, std::ref(progress));
-    // Last, because until then the folder may hold the results of an earlier run.
-    io::write_text_file((configuration.folder / "config.used.yaml").string(),
-                        configuration.used_yaml);
-    log_summary(summary, planned);
+    const RunResult result = run_job(planned, manner, std::ref(progress));
+    if (result.summary) {
+        log_summary(*result.summary, planned);
+    }
+    if (!result.failed.empty()) {
+        throw FailedTiles(failure_sentence(result) +
+                          "; the results say failed_tile there, --resume tries them again");
+    }
 }
 
 std::shared_ptr<Arguments> add_arguments(CLI::App& command)
@@ -101,6 +138,20 @@ CLI::App* add_run_command(CLI::App& app)
     command->footer(kRunHelp);
     const auto arguments = add_arguments(*command);
     command->add_flag("--dry-run", arguments->dry_run, "check and plan, but do nothing");
+    command->add_flag("--resume", arguments->resume,
+                      "go on where an earlier attempt stopped: only what is missing is done");
+    command->add_flag("--restart", arguments->restart, "throw an unfinished attempt away");
+    command->add_option(
+        "--shard", arguments->shard,
+        "only this share of the tiles: I/N, I from 0; auto: as the job array of "
+        "Slurm or Kubernetes says; auto/N");
+    command
+        ->add_option("--stage", arguments->stage,
+                     "coarse, tiles or assemble: one stage of a sharded run (default: all)")
+        ->check(CLI::IsMember({"all", "coarse", "tiles", "assemble"}));
+    command->add_flag(
+        "--take-over", arguments->take_over,
+        "the process that has the shard is known to be gone, whatever its lock says");
     command->callback([arguments] { run(*arguments); });
     return command;
 }
@@ -111,8 +162,9 @@ CLI::App* add_plan_command(CLI::App& app)
     command->footer(kPlanHelp);
     const auto arguments = add_arguments(*command);
     command->add_flag("--json", arguments->json, "as JSON");
-    command->callback(
-        [arguments] { print_plan(plan_job(load(*arguments).job), arguments->json); });
+    command->callback([arguments] {
+        print_plan(plan_job(load(*arguments).configuration.job), arguments->json);
+    });
     return command;
 }
 

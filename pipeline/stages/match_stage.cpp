@@ -1,17 +1,21 @@
 #include "pipeline/stages/match_stage.h"
 
+#include "io/disk_room.h"
 #include "io/error.h"
-#include "io/hillshade.h"
-#include "io/quicklook.h"
-#include "io/raster_source.h"
+#include "io/pending_file.h"
 #include "io/scratch_folder.h"
-#include "pipeline/cuda_worker.h"
 #include "pipeline/error.h"
-#include "pipeline/stages/output_check.h"
-#include "pipeline/stages/prepare_stage.h"
-#include "pipeline/tile_graph.h"
+#include "pipeline/freed_memory.h"
+#include "pipeline/run_log.h"
+#include "pipeline/stages/assemble_stage.h"
+#include "pipeline/stages/earlier_run.h"
+#include "pipeline/stages/fingerprint_stage.h"
+#include "pipeline/stages/pair_stage.h"
+#include "pipeline/stages/report_stage.h"
+#include "pipeline/stages/run_record.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -26,187 +30,313 @@ namespace hsgm::pipeline {
 
 namespace {
 
-using matcher::Matcher;
+using tiling::Shard;
 
-// Levels kept on scratch disk: those of the match, and the one HMI is learnt from.
-int levels_to_prepare(const matcher::PairShape& shape, const matcher::LevelPlan& levels,
-                      const Job& job)
-{
-    const int hmi = job.matcher.cost == matcher::Cost::hmi ? matcher::hmi_level(shape) + 1 : 1;
-    return std::max(levels.levels(), hmi);
-}
-
-void check_sizes(const io::RasterSource& left, const io::RasterSource& right)
-{
-    if (left.size().rows != right.size().rows) {
-        throw io::InputError(fmt::format("a rectified pair has equal heights, but {} has {} "
-                                         "rows and {} has {}; resample the "
-                                         "pair to epipolar geometry first",
-                                         left.description(), left.size().rows,
-                                         right.description(), right.size().rows));
-    }
-}
+constexpr std::size_t kFailuresShown = 10;
 
 std::filesystem::path folder_of(const std::filesystem::path& file)
 {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-// A matcher for planning: the table that cost hmi needs comes later and takes no part in it.
-matcher::PairTraits planning_traits(const matcher::PairShape& shape)
+void make_folder(const std::filesystem::path& folder)
 {
-    matcher::PairTraits pair;
-    pair.shape = shape;
-    pair.hmi = std::make_shared<matcher::HmiTable>();
-    return pair;
-}
-
-matcher::PairTraits pair_traits(const PlannedJob& planned, const PreparedPair& prepared)
-{
-    matcher::PairTraits pair;
-    pair.shape = planned.shape;
-    pair.left_tone = prepared.left_tone();
-    pair.right_tone = prepared.right_tone();
-    if (planned.job.matcher.cost == matcher::Cost::hmi) {
-        const auto images = prepared.read_whole(matcher::hmi_level(planned.shape));
-        pair.hmi = matcher::solve_hmi_table(pair, planned.job.matcher, images.left.pixels,
-                                            images.right.pixels);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw io::StorageError(
+            fmt::format("Cannot make the folder {}: {}.", folder.string(), error.message()));
     }
-    return pair;
 }
 
-std::shared_ptr<const matcher::CoarseSolution> solve_coarse(const Matcher& matcher,
-                                                            const PreparedPair& prepared)
-{
-    if (!matcher.plan().coarsest_whole) {
-        return matcher.solve_coarse({}, {});
-    }
-    const auto images = prepared.read_whole(matcher.plan().levels() - 1);
-    return matcher.solve_coarse(images.left.pixels, images.right.pixels);
-}
-
-TileTask read_tile(int tile, const tiling::TilePlan& plan, const Matcher& matcher,
-                   const PreparedPair& prepared)
-{
-    TileTask task;
-    task.index = tile;
-    task.core = plan.core(tile);
-    const auto support = matcher.support(task.core);
-    for (int level = 0; level < matcher.plan().windowed_levels(); ++level) {
-        task.images.push_back(prepared.read(level, support[static_cast<std::size_t>(level)]));
-    }
-    return task;
-}
-
-// What a stage has freed goes back to the system: the plan counts stages one by one, and the
-// program otherwise keeps freed memory for the next tile.
-void give_back_freed_memory()
-{
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
-}
-
-void match_tiles(const PlannedJob& planned, const Matcher& matcher,
-                 const PreparedPair& prepared, FirstPass& first_pass, const Progress& progress)
-{
-    const auto coarse = solve_coarse(matcher, prepared);
-    give_back_freed_memory();
-    const tiling::TilePlan plan(planned.shape.left, planned.budget.tile_size_px);
-    const auto trouble = [](int tile, const std::string& why) {
-        spdlog::warn("{}; {}", why,
-                     tile < 0 ? "it takes no part in this run"
-                              : fmt::format("tile {} was matched on the processor", tile));
-    };
-    const auto workers =
-        make_workers(planned.devices, planned.budget, matcher, *coarse, trouble);
-    int done = 0;
-    TileSteps steps;
-    steps.read = [&](int tile) { return read_tile(tile, plan, matcher, prepared); };
-    steps.write = [&](int, const matcher::TileMatch& match) {
-        first_pass.store(match);
-        progress(++done, plan.count());
-    };
-    const auto sequence = tiling::tile_sequence(plan, planned.job.run.order);
-    run_tiles(sequence, steps, workers, planned.budget.tiles_in_flight);
-}
-
-void run_first_pass(const PlannedJob& planned, const PreparedPair& prepared,
-                    FirstPass& first_pass, const Progress& progress)
-{
+/// One call of run_job, stage by stage.
+class Run {
+public:
+    Run(const PlannedJob& planned, const RunManner& manner, RunLayout layout,
+        const Progress& progress)
+        : planned_(planned), manner_(manner), layout_(std::move(layout)), progress_(progress)
     {
-        const Matcher matcher(pair_traits(planned, prepared), planned.job.matcher);
-        match_tiles(planned, matcher, prepared, first_pass, progress);
     }
-    give_back_freed_memory();
-}
 
-MatchSummary run_in_arena(const PlannedJob& planned, const Progress& progress)
-{
-    const Job& job = planned.job;
-    FileSource left{io::RasterSource(job.left)};
-    FileSource right{io::RasterSource(job.right)};
-    const io::ScratchFolder scratch(folder_of(job.outputs.disparity));
-    FirstPass first_pass(planned.shape, scratch.path());
-    const PreparedPair prepared(left, right, planned.pyramid_levels, scratch.path());
-    give_back_freed_memory();
-    run_first_pass(planned, prepared, first_pass, progress);
-    return refine_and_write(first_pass, prepared, planned.shape, job, planned.geo);
-}
+    RunResult carry_out();
 
-// Pictures for people, made from the finished rasters.
-void write_pictures(const OutputPaths& outputs)
+private:
+    bool does(RunStage stage) const
+    {
+        return manner_.stage == RunStage::all || manner_.stage == stage;
+    }
+    std::optional<OwnedLedger> take(const std::filesystem::path& ledger, WhenHeld when_held,
+                                    std::function<void()> once_locked = {}) const;
+    bool outputs_are_there() const;
+    void check_room() const;
+    std::string log_name() const;
+    void do_coarse();
+    void do_tiles(Shard shard);
+    void do_assemble();
+    void finish(const OwnedLedger& book, const TilesOfRun& tiles);
+    void remove_leftovers(const OutputPaths& o) const;
+    int shard_count() const;
+
+    const PlannedJob& planned_;
+    const RunManner& manner_;
+    RunLayout layout_;
+    const Progress& progress_;
+    ledger::Facts fingerprint_;
+    bool already_finished_ = false;
+    RunResult result_;
+};
+
+RunResult Run::carry_out()
 {
-    const auto write = [](const std::filesystem::path& raster,
-                          const std::filesystem::path& picture, io::QuicklookStyle style) {
-        if (!picture.empty()) {
-            io::QuicklookOptions options;
-            options.style = style;
-            io::write_quicklook_png(raster.string(), picture.string(), options);
+    if (manner_.is_durable()) {
+        fingerprint_ = fingerprint(planned_, manner_.settings);
+    }
+    check_room();
+    do_coarse();
+    if (already_finished_) {
+        spdlog::info("{}: everything is done already", layout_.root.string());
+        return {};
+    }
+    std::optional<LogFile> log;
+    if (manner_.is_durable()) {
+        log.emplace(layout_.root / "logs" / (log_name() + ".jsonl"));
+        log_event("begin", {{"program", "hsgm " HSGM_VERSION},
+                            {"threads", planned_.budget.threads},
+                            {"tile_size_px", planned_.budget.tile_size_px},
+                            {"memory_estimate_bytes", planned_.budget.estimate_bytes},
+                            {"resume", manner_.resume}});
+    }
+    if (does(RunStage::tiles)) {
+        const int count = shard_count();
+        for (int index = 0; index < count; ++index) {
+            if (!manner_.shard || manner_.shard->index == index) {
+                do_tiles({index, count});
+            }
         }
-    };
-    write(outputs.disparity, outputs.disparity_picture, io::QuicklookStyle::disparity);
-    write(outputs.hillshade, outputs.hillshade_picture, io::QuicklookStyle::hillshade);
+    }
+    if (does(RunStage::assemble)) {
+        do_assemble();
+    }
+    log_event("end", {{"tiles_done", result_.tiles_done},
+                      {"tiles_failed", result_.failed.size()},
+                      {"assembled", result_.summary.has_value()}});
+    return std::move(result_);
+}
+
+// One log for each part of a run, which later attempts go on with.
+std::string Run::log_name() const
+{
+    if (manner_.shard) {
+        return "tiles-" + name(*manner_.shard);
+    }
+    switch (manner_.stage) {
+    case RunStage::coarse:
+        return "coarse";
+    case RunStage::assemble:
+        return "assemble";
+    default:
+        return "run";
+    }
+}
+
+// As many as there are already, where this process is not one of them.
+int Run::shard_count() const
+{
+    if (manner_.shard) {
+        return manner_.shard->count;
+    }
+    const auto shards = layout_.shards();
+    return shards.empty() ? 1 : shards.back().count;
+}
+
+// Before anything is written: what this call will need on the disk, less what an earlier one
+// has taken already.
+void Run::check_room() const
+{
+    const Budget& budget = planned_.budget;
+    std::int64_t scratch = does(RunStage::coarse) ? budget.pyramid_disk_bytes : 0;
+    if (does(RunStage::tiles)) {
+        const int rows = manner_.shard ? band_of(planned_.shape.left, *manner_.shard).rows
+                                       : planned_.shape.left.rows;
+        scratch += FirstPass::disk_bytes(planned_.shape, rows);
+    }
+    const std::int64_t results = does(RunStage::assemble) ? budget.output_disk_bytes : 0;
+    const auto free = io::free_bytes(layout_.root);
+    const std::int64_t needed = scratch + results - io::bytes_taken(layout_.work());
+    if (free && needed > *free) {
+        constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+        throw io::StorageError(fmt::format(
+            "the run needs {} MiB on the disk of {} ({} between its stages, {} of results at "
+            "most), but {} MiB are free; make room, or name another output",
+            needed / kMiB + 1, folder_of(planned_.job.outputs.disparity).string(),
+            scratch / kMiB + 1, results / kMiB + (results > 0), *free / kMiB));
+    }
+}
+
+void Run::do_coarse()
+{
+    if (!does(RunStage::coarse)) {
+        already_finished_ = manner_.resume && is_finished(layout_) && outputs_are_there();
+        require_coarse_stage(layout_, fingerprint_);
+        return;
+    }
+    make_folder(layout_.ledgers());
+    // Shards that begin at once wait for the one that prepares the pair for all of them.
+    const auto book =
+        take(layout_.coarse_ledger(), manner_.shard ? WhenHeld::wait : WhenHeld::refuse, [&] {
+            judge_earlier_run(layout_, manner_, fingerprint_);
+            judge_earlier_pixels(layout_, planned_);
+            already_finished_ = is_finished(layout_) && outputs_are_there();
+        });
+    if (already_finished_) {
+        return;
+    }
+    try {
+        (*book)->set_facts(as_facts(fingerprint_));
+        prepare_pair(planned_, layout_, *book, manner_.is_durable());
+        give_back_freed_memory();
+    } catch (...) {
+        // Nothing is worth resuming: what bad input leaves is what was there before it.
+        if (!manner_.shard && layout_.shards().empty()) {
+            discard(layout_);
+        }
+        throw;
+    }
+}
+
+std::optional<OwnedLedger> Run::take(const std::filesystem::path& ledger, WhenHeld when_held,
+                                     std::function<void()> once_locked) const
+{
+    return OwnedLedger::take(ledger,
+                             {when_held, !manner_.is_durable(), std::move(once_locked)});
+}
+
+bool Run::outputs_are_there() const
+{
+    const OutputPaths& o = planned_.job.outputs;
+    return std::filesystem::exists(o.disparity) && std::filesystem::exists(o.confidence) &&
+           std::filesystem::exists(o.reasons);
+}
+
+void Run::do_tiles(Shard shard)
+{
+    const auto book = take(layout_.tiles_ledger(shard),
+                           manner_.take_over ? WhenHeld::take_over : WhenHeld::refuse,
+                           [&] { judge_earlier_shard(layout_, shard, manner_, fingerprint_); });
+    (*book)->set_facts(as_facts(fingerprint_));
+    match_tiles(planned_, layout_, shard, manner_, *book, progress_);
+    give_back_freed_memory();
+    for (const ledger::TileRow& row : (*book)->tiles(kMatchStage)) {
+        result_.tiles_done += row.state == ledger::TileState::done;
+        if (row.state == ledger::TileState::failed) {
+            result_.failed.push_back(row);
+        }
+    }
+}
+
+void Run::do_assemble()
+{
+    // Of shards that end together, one assembles.
+    const bool among_others = manner_.stage == RunStage::all && manner_.shard.has_value();
+    const auto book =
+        take(layout_.assemble_ledger(), among_others ? WhenHeld::give_way : WhenHeld::refuse);
+    if (!book) {
+        return;
+    }
+    const TilesOfRun tiles = tiles_of_run(planned_, layout_, shard_count());
+    if (!tiles.missing.empty()) {
+        if (among_others) {
+            spdlog::info("{}; the last shard to finish assembles", tiles.missing);
+            return;
+        }
+        throw io::ConfigError(
+            fmt::format("{} cannot be assembled: {}", layout_.root.string(), tiles.missing));
+    }
+    result_.failed = tiles.failed;
+    result_.tiles_done = tiles.done;
+    remove_leftovers(planned_.job.outputs);
+    if (is_assembled(*book, tiles.failed.size(), tiles.done)) {
+        spdlog::info("everything is done already");
+    } else {
+        result_.summary = assemble(planned_, layout_, tiles, *book);
+        finish(*book, tiles);
+    }
+    if (tiles.failed.empty() && manner_.is_durable()) {
+        std::error_code none;
+        std::filesystem::remove_all(layout_.work(), none);
+    }
+}
+
+// Parts of outputs that killed processes left: with the ledger of this stage, nobody else is
+// at work on them.
+void Run::remove_leftovers(const OutputPaths& o) const
+{
+    for (const auto& path : {o.disparity, o.confidence, o.reasons, o.height, o.depth,
+                             o.hillshade, o.disparity_picture, o.hillshade_picture}) {
+        if (!path.empty() && manner_.is_durable()) {
+            io::remove_unpublished(path.string());
+        }
+    }
+}
+
+// What stands beside the rasters, then the sign that all is there.
+void Run::finish(const OwnedLedger& book, const TilesOfRun& tiles)
+{
+    if (!manner_.is_durable()) {
+        return;
+    }
+    ledger::Facts defines = fingerprint_;
+    defines.merge(pixels_in(ledger::read_ledger(layout_.coarse_ledger()).facts));
+    const auto record = run_record(planned_, layout_, result_.summary.value(), defines, book);
+    if (!manner_.used_yaml.empty()) {
+        io::write_text_file((layout_.root / "config.used.yaml").string(), manner_.used_yaml);
+    }
+    io::write_text_file((layout_.root / "run.json").string(), record.dump(2) + "\n");
+    mark_assembled(book, tiles.failed.size(), tiles.done);
+    write_report(layout_);
 }
 
 } // namespace
 
-PlannedJob plan_job(const Job& job)
-{
-    const io::RasterSource left(job.left);
-    const io::RasterSource right(job.right);
-    check_sizes(left, right);
-    check_outputs(job);
-    PlannedJob planned;
-    planned.job = job;
-    planned.shape = {left.size(), right.size(), job.disparity};
-    planned.geo = left.geo_reference();
-    try {
-        const Matcher matcher(planning_traits(planned.shape), job.matcher);
-        planned.levels = matcher.plan();
-        planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
-        planned.budget = make_budget(matcher, job, planned.pyramid_levels);
-        planned.devices = plan_devices(device_choice(job.run.device), matcher, planned.budget);
-    } catch (const std::invalid_argument& error) {
-        throw io::ConfigError(error.what());
-    }
-    return planned;
-}
-
-MatchSummary run_job(const PlannedJob& planned, const Progress& progress)
+RunResult run_job(const PlannedJob& planned, const RunManner& manner, const Progress& progress)
 {
     const auto threads = static_cast<std::size_t>(planned.budget.threads);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     tbb::task_arena arena(planned.budget.threads);
-    const MatchSummary summary = arena.execute([&] { return run_in_arena(planned, progress); });
-    if (!planned.job.outputs.hillshade.empty()) {
-        io::HillshadeOptions options;
-        options.creation_options = planned.job.outputs.creation_options;
-        io::write_hillshade(planned.job.outputs.height.string(),
-                            planned.job.outputs.hillshade.string(), options);
+    return arena.execute([&] {
+        std::optional<io::ScratchFolder> hidden;
+        if (!manner.is_durable()) {
+            hidden.emplace(folder_of(planned.job.outputs.disparity));
+        }
+        const RunLayout layout{hidden ? hidden->path() : manner.folder};
+        return Run(planned, manner, layout, progress).carry_out();
+    });
+}
+
+MatchSummary run_job(const PlannedJob& planned,
+                     const std::function<void(int done, int all)>& progress)
+{
+    const RunResult result =
+        run_job(planned, RunManner{}, [&](const TileProgress& p) { progress(p.done, p.all); });
+    if (!result.failed.empty()) {
+        throw FailedTiles(failure_sentence(result));
     }
-    write_pictures(planned.job.outputs);
-    return summary;
+    return result.summary.value();
+}
+
+std::string failure_sentence(const RunResult& result)
+{
+    const std::size_t failed = result.failed.size();
+    std::string list;
+    for (std::size_t i = 0; i < std::min(failed, kFailuresShown); ++i) {
+        const ledger::TileRow& row = result.failed[i];
+        list += fmt::format("{}rows {}-{}, columns {}-{} ({})", i > 0 ? "; " : "", row.rect.row,
+                            row.rect.row_end() - 1, row.rect.col, row.rect.col_end() - 1,
+                            row.reason);
+    }
+    return fmt::format("{} of {} tiles failed: {}{}", failed,
+                       failed + static_cast<std::size_t>(result.tiles_done), list,
+                       failed > kFailuresShown ? "; and more" : "");
 }
 
 } // namespace hsgm::pipeline

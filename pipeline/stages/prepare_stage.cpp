@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "matcher/reduce.h"
 #include "pipeline/error.h"
+#include "pipeline/stages/pixel_checksum.h"
 #include "pipeline/stages/pixel_mapping.h"
 #include "tiling/pyramid.h"
 
@@ -22,20 +23,22 @@ using tiling::Patch;
 using tiling::Rect;
 using tiling::Size;
 
-std::vector<Raster> make_levels(const std::filesystem::path& folder, const std::string& name,
-                                const std::vector<Size>& sizes)
+std::vector<Raster> open_levels(const std::filesystem::path& folder, const std::string& name,
+                                const std::vector<Size>& sizes, io::ScratchLife life)
 {
     std::vector<Raster> levels;
     levels.reserve(sizes.size());
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-        levels.emplace_back(folder, name + std::to_string(k) + ".raw", sizes[k]);
+        levels.emplace_back(folder, name + std::to_string(k) + ".raw", sizes[k],
+                            std::uint16_t{0}, life);
     }
     return levels;
 }
 
 // Copies a source into level 0 and returns the counts of its valid pixels.
-std::unique_ptr<PixelHistogram>
-copy_full_resolution(PixelSource& source, const PixelMapping& mapping, Raster& level0)
+std::unique_ptr<PixelHistogram> copy_full_resolution(PixelSource& source,
+                                                     const PixelMapping& mapping,
+                                                     Raster& level0, PixelChecksum& checksum)
 {
     auto histogram = std::make_unique<PixelHistogram>();
     tiling::Image<double> values;
@@ -47,6 +50,7 @@ copy_full_resolution(PixelSource& source, const PixelMapping& mapping, Raster& l
             pixels = tiling::Image<std::uint16_t>(window.size());
         }
         source.read(window, values);
+        checksum.add(values.view());
         std::transform(values.pixels().begin(), values.pixels().end(), pixels.data(), mapping);
         for (const std::uint16_t pixel : pixels.pixels()) {
             ++(*histogram)[pixel];
@@ -78,9 +82,11 @@ void reduce_level(const Raster& fine, Raster& coarse)
 }
 
 matcher::Tone fill(PixelSource& source, const PixelMapping& mapping,
-                   std::vector<Raster>& levels)
+                   std::vector<Raster>& levels, std::string& checksum)
 {
-    const auto histogram = copy_full_resolution(source, mapping, levels.front());
+    PixelChecksum sum;
+    const auto histogram = copy_full_resolution(source, mapping, levels.front(), sum);
+    checksum = sum.hex();
     if (std::all_of(histogram->begin(), histogram->end(), [](auto n) { return n == 0; })) {
         throw io::InputError(source.description() +
                              " has no valid pixel: everything is nodata or masked; check the "
@@ -102,15 +108,39 @@ Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
 } // namespace
 
 PreparedPair::PreparedPair(PixelSource& left, PixelSource& right, int levels,
+                           const std::filesystem::path& scratch_folder,
+                           PairChecksums& checksums)
+{
+    const auto life = io::ScratchLife::kept;
+    left_.levels =
+        open_levels(scratch_folder, "left", tiling::pyramid_sizes(left.size(), levels), life);
+    right_.levels =
+        open_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels), life);
+    const PixelMapping mapping = find_mapping(left, right);
+    tbb::parallel_invoke(
+        [&] { left_.tone = fill(left, mapping, left_.levels, checksums.left); },
+        [&] { right_.tone = fill(right, mapping, right_.levels, checksums.right); });
+}
+
+PreparedPair::PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,
                            const std::filesystem::path& scratch_folder)
 {
-    left_.levels =
-        make_levels(scratch_folder, "left", tiling::pyramid_sizes(left.size(), levels));
-    right_.levels =
-        make_levels(scratch_folder, "right", tiling::pyramid_sizes(right.size(), levels));
-    const PixelMapping mapping = find_mapping(left, right);
-    tbb::parallel_invoke([&] { left_.tone = fill(left, mapping, left_.levels); },
-                         [&] { right_.tone = fill(right, mapping, right_.levels); });
+    const auto life = io::ScratchLife::existing;
+    left_ = {
+        open_levels(scratch_folder, "left", tiling::pyramid_sizes(shape.left, levels), life),
+        tones.left};
+    right_ = {
+        open_levels(scratch_folder, "right", tiling::pyramid_sizes(shape.right, levels), life),
+        tones.right};
+}
+
+void PreparedPair::sync()
+{
+    for (Pyramid* pyramid : {&left_, &right_}) {
+        for (Raster& level : pyramid->levels) {
+            level.sync();
+        }
+    }
 }
 
 matcher::LevelImages PreparedPair::read(int level, const tiling::LevelSupport& support) const

@@ -8,22 +8,40 @@
 #include "pipeline/stages/pixel_source.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace hsgm::pipeline {
 
-/// Both images of a pair as the matcher wants them, every pyramid level, on scratch disk.
-/// Reads are thread-safe.
+/// Tones of a pair's images, which need a pass over all pixels.
+struct PairTones {
+    matcher::Tone left;
+    matcher::Tone right;
+};
+
+/// Checksums of all pixels of a pair's sources, as read.
+struct PairChecksums {
+    std::string left;
+    std::string right;
+};
+
+/// Both images of a pair as the matcher wants them, every pyramid level, on scratch disk, where
+/// they stay. Reads are thread-safe.
 class PreparedPair {
 public:
-    /// Streams both sources through once (twice for float sources) and reduces them level by
-    /// level; memory does not grow with the images. Throws InputError for an image without a
-    /// single valid pixel.
+    /// Streams both sources through once (twice for float sources), tells their checksums on
+    /// the way and reduces them level by level; memory does not grow with the images. Throws
+    /// InputError for an image without a single valid pixel.
     PreparedPair(PixelSource& left, PixelSource& right, int levels,
+                 const std::filesystem::path& scratch_folder, PairChecksums& checksums);
+    /// Opens what another process has prepared. Throws StorageError where it is not whole.
+    PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,
                  const std::filesystem::path& scratch_folder);
 
-    matcher::Tone left_tone() const { return left_.tone; }
-    matcher::Tone right_tone() const { return right_.tone; }
+    /// Returns when all of it is on the disk.
+    void sync();
+
+    PairTones tones() const { return {left_.tone, right_.tone}; }
 
     /// The parts of level `level` that a tile's support names.
     matcher::LevelImages read(int level, const tiling::LevelSupport& support) const;

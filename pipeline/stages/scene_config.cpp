@@ -116,6 +116,27 @@ void read(ConfigSection section, synth::Sensor& s)
     read_list(section, "holes", s.holes);
 }
 
+void read(ConfigSection section, OrbitView& view)
+{
+    view.toward_east = section.number("toward_east", view.toward_east);
+    view.toward_north = section.number("toward_north", view.toward_north);
+    view.turn_deg = section.number("turn_deg", view.turn_deg);
+    view.written_col_px = section.number("written_col_px", view.written_col_px);
+    view.written_row_px = section.number("written_row_px", view.written_row_px);
+}
+
+void read(ConfigSection section, SceneCameras& c)
+{
+    c.crs = section.text("crs", c.crs);
+    c.west = section.number("west", c.west);
+    c.north = section.number("north", c.north);
+    c.cell_m = section.number("cell_m", c.cell_m);
+    c.base_m = section.number("base_m", c.base_m);
+    c.pixel_m = section.number("pixel_m", c.pixel_m);
+    read(section.section("left"), c.left);
+    read(section.section("right"), c.right);
+}
+
 tiling::Size read_size(ConfigSection& section, tiling::Size size)
 {
     const std::vector<double> given = section.numbers("size", 2);
@@ -155,10 +176,17 @@ SceneConfig read_scene(const std::string& path, const std::vector<std::string>& 
         document.set(assignment);
     }
     SceneConfig config;
-    read(document.root(), config.scene);
+    io::ConfigSection root = document.root();
+    read(root, config.scene);
+    if (root.has("cameras")) {
+        read(root.section("cameras"), config.cameras.emplace());
+    }
     document.refuse_unknown();
     try {
         config.scene.validate();
+        if (config.cameras) {
+            config.cameras->validate();
+        }
     } catch (const std::invalid_argument& refused) {
         throw io::ConfigError(path + ": " + refused.what());
     }

@@ -33,12 +33,14 @@ public:
     double ground_brightness(double x, double y) const;
     double piece_brightness(const Piece& piece, double x, double y) const;
 
+    /// What contrast is scaled by at a point: 1 but in areas of low texture.
+    double contrast_scale(double x, double y) const;
+
     /// Bounds of every disparity of the scene.
     DisparityBounds bounds() const { return bounds_; }
 
 private:
     void append_city(const Area& area, std::vector<Piece>& pieces) const;
-    double contrast_scale(double x, double y) const;
 
     Scene scene_;
     TerrainSurface ground_;

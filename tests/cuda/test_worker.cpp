@@ -51,14 +51,20 @@ struct Bench {
     Bench() { cuda_test::device_of({}); }
     ~Bench() { stand_in::reset(); }
 
-    std::vector<std::unique_ptr<MatchWorker>> workers(const char* device)
+    std::vector<std::shared_ptr<MatchWorker>> workers(const char* device)
     {
         Budget shared = budget; // which the plan takes for the devices' tiles, too
         const DevicePlan plan = plan_devices(device_choice(device), pair.matcher(), shared);
-        return make_workers(plan, shared, pair.matcher(), pair.coarse(),
-                            [this](int tile, const std::string& why) {
-                                troubles.push_back(std::to_string(tile) + " " + why);
-                            });
+        return make_workers(plan, shared, basis(),
+                            [this](const std::string& why) { troubles.push_back(why); });
+    }
+    /// Borrowed: workers go before the pair does.
+    MatchBasis basis() const
+    {
+        const std::shared_ptr<void> nobody;
+        return {{nobody, &pair.matcher()},
+                {nobody, &pair.coarse()},
+                std::make_shared<tbb::task_arena>(2)};
     }
     /// How many tiles differ from the host's.
     int differing(MatchWorker& worker)
@@ -66,7 +72,10 @@ struct Bench {
         int count = 0;
         const auto cores = tile_cores(pair.matcher(), budget);
         for (std::size_t i = 0; i < cores.size(); ++i) {
-            const TileTask task{static_cast<int>(i), cores[i], pair.images(cores[i])};
+            TileTask task;
+            task.index = static_cast<int>(i);
+            task.core = cores[i];
+            task.images = pair.images(cores[i]);
             const auto host = pair.matcher().match_tile(task.core, task.images, pair.coarse());
             count += cuda_test::difference(host, worker.match(task)).empty() ? 0 : 1;
         }
@@ -92,8 +101,8 @@ TEST_CASE("a device's workers share the tiles with the processor's, and give the
     Bench bench;
     const auto workers = bench.workers("auto");
     REQUIRE(workers.size() == 3);
-    CHECK(workers[0]->name() == "cuda:0");
-    CHECK(workers[1]->name() == "cuda:0");
+    CHECK(workers[0]->name() == "cuda:0 stream 0");
+    CHECK(workers[1]->name() == "cuda:0 stream 1");
     CHECK(workers[2]->name() == "cpu 0");
     const auto before = stand_in::launches();
     for (const auto& worker : workers) {
@@ -112,8 +121,8 @@ TEST_CASE("a device takes exactly the memory that was planned for it")
         plan_devices(device_choice("cuda"), bench.pair.matcher(), bench.budget);
     REQUIRE(plan.cuda.size() == 1);
     CHECK(plan.cuda[0].streams == 2);
-    const auto workers = make_workers(plan, bench.budget, bench.pair.matcher(),
-                                      bench.pair.coarse(), [](int, const std::string&) {});
+    const auto workers =
+        make_workers(plan, bench.budget, bench.basis(), [](const std::string&) {});
     CHECK(static_cast<std::int64_t>(stand_in::allocated_bytes()) - before ==
           plan.cuda[0].bytes);
     CHECK(bench.differing(*workers.front()) == 0);
@@ -180,7 +189,8 @@ TEST_CASE("a device that fails while it is made ready takes no part, and somebod
         REQUIRE_FALSE(workers.empty());
         CHECK(workers.back()->name() == "cpu 0");
         REQUIRE(bench.troubles.size() == 1);
-        CHECK_THAT(bench.troubles[0], Contains("-1 cuda:0") && Contains("out of memory"));
+        CHECK_THAT(bench.troubles[0], Contains("cuda:0: ") && Contains("out of memory") &&
+                                          Contains("takes no part"));
         CHECK(bench.differing(*workers.front()) == 0);
     }
 }

@@ -82,6 +82,14 @@ void RunningProgram::signal(int number) const
     ::kill(child_, number);
 }
 
+bool RunningProgram::has_ended() const
+{
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) ==
+               0 &&
+           info.si_pid != 0;
+}
+
 Outcome RunningProgram::wait()
 {
     int status = 0;
@@ -119,6 +127,13 @@ Snapshot snapshot(const std::string& folder)
             files[name] = bytes_of(entry.path());
         }
     }
+    return files;
+}
+
+Snapshot rasters_in(const std::string& folder)
+{
+    Snapshot files = snapshot(folder);
+    std::erase_if(files, [](const auto& file) { return !file.first.ends_with(".tif"); });
     return files;
 }
 

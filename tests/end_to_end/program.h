@@ -28,6 +28,7 @@ public:
     /// What it has written to standard error so far.
     std::string err() const;
     void signal(int number) const;
+    bool has_ended() const;
     Outcome wait();
 
 private:
@@ -44,6 +45,8 @@ Outcome run_hsgm(const std::vector<std::string>& arguments);
 /// Every file below a folder, hidden ones too, and its bytes. Folders have a slash at the end.
 using Snapshot = std::map<std::string, std::string>;
 Snapshot snapshot(const std::string& folder);
+/// Those of it that are rasters: all that a run promises to be the same.
+Snapshot rasters_in(const std::string& folder);
 /// The names alone.
 std::vector<std::string> names_in(const Snapshot& files);
 

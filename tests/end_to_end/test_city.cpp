@@ -99,16 +99,15 @@ TEST_CASE("a run writes its rasters and its configuration, and from that the sam
 {
     const TemporaryFolder folder;
     make_city(folder);
-    Snapshot first = snapshot(folder / "result");
-    CHECK(names_in(first) == std::vector<std::string>{"confidence.tif", "config.used.yaml",
-                                                      "disparity.tif", "height.tif",
-                                                      "hillshade.tif", "reasons.tif"});
+    Snapshot first = rasters_in(folder / "result");
+    CHECK(names_in(first) == std::vector<std::string>{"confidence.tif", "disparity.tif",
+                                                      "height.tif", "hillshade.tif",
+                                                      "reasons.tif"});
+    CHECK(std::filesystem::exists(folder / "result/config.used.yaml"));
+    CHECK_FALSE(std::filesystem::exists(folder / "result/work"));
     hsgm_does({"run", folder / "result/config.used.yaml", "-o", folder / "again", "--tile-size",
                "100", "--threads", "1"});
-    Snapshot second = snapshot(folder / "again");
-    first.erase("config.used.yaml");
-    second.erase("config.used.yaml");
-    CHECK((first == second));
+    CHECK((first == rasters_in(folder / "again")));
 }
 
 TEST_CASE("a run replaces the results of an earlier one")

@@ -5,15 +5,17 @@
 #include <sys/mount.h>
 
 #include <iostream>
+#include <string>
 
 namespace hsgm::tests {
 
-/// A disk of 1 MiB of its own. Needs root's rights; `mounted()` says whether it had them.
+/// A disk of its own, of 1 MiB or as asked. Needs root's rights; `mounted()` says whether it
+/// had them.
 class SmallDisk {
 public:
-    SmallDisk()
+    explicit SmallDisk(int size_mib = 1) : size_("size=" + std::to_string(size_mib) + "m")
     {
-        mounted_ = ::mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=1m") == 0;
+        mounted_ = ::mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, size_.c_str()) == 0;
         if (!mounted_) {
             // ctest looks for these words and reports the test as skipped.
             std::cout << "cannot mount a small disk here: run as root to test full disks\n";
@@ -33,12 +35,13 @@ public:
     void make_read_only()
     {
         REQUIRE(::mount("tmpfs", folder_.path().c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY,
-                        "size=1m") == 0);
+                        size_.c_str()) == 0);
     }
     const io::samples::TemporaryFolder& folder() const { return folder_; }
 
 private:
     io::samples::TemporaryFolder folder_;
+    std::string size_;
     bool mounted_ = false;
 };
 

@@ -18,6 +18,7 @@ std::string module_of(const std::string& path)
                                                    "pipeline/dsm",
                                                    "pipeline/synth",
                                                    "pipeline/evaluate",
+                                                   "pipeline/ledger",
                                                    "pipeline",
                                                    "matcher",
                                                    "io",
@@ -42,6 +43,7 @@ bool may_include(const std::string& from, const std::string& to)
         {"pipeline/dsm", {"tiling"}},
         {"pipeline/synth", {"tiling", "pipeline/geometry"}},
         {"pipeline/evaluate", {"tiling", "pipeline/geometry"}},
+        {"pipeline/ledger", {"tiling", "io"}},
     };
     if (from == to || from == "tests") {
         return true;

@@ -271,3 +271,28 @@ TEST_CASE("amounts of bytes understand their units and refuse what is none")
         CHECK_THROWS_AS(parse_byte_amount(wrong), ConfigError);
     }
 }
+
+TEST_CASE("values in force are listed by name, and files are told from words")
+{
+    ConfigDocument document = ConfigDocument::parse(
+        "pair: {left: a.tif, right: {path: b.tif, mask: m.tif}}\nmatcher: {p2: 160}\n",
+        "run.yaml", "/data");
+    ConfigSection root = document.root();
+    ConfigSection pair = root.section("pair");
+    pair.image("left");
+    pair.image("right");
+    ConfigSection matcher = root.section("matcher");
+    matcher.integer("p2", 192);
+    matcher.text("cost", "census7x7");
+    std::string found;
+    for (const ConfigValue& value : document.effective_values()) {
+        found += value.name + "=" + value.text + (value.is_file ? " file" : "") +
+                 (value.is_image ? " image" : "") + "\n";
+    }
+    CHECK(found == "pair.left=/data/a.tif file image\n"
+                   "pair.right.path=/data/b.tif file image\n"
+                   "pair.right.band=auto\n"
+                   "pair.right.mask=/data/m.tif file\n"
+                   "matcher.p2=160\n"
+                   "matcher.cost=census7x7\n");
+}

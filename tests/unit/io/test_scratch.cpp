@@ -123,3 +123,28 @@ TEST_CASE("a scratch folder goes with its content, also when a run dies")
     }
     CHECK_THROWS_AS(ScratchFolder(folder.path() / "absent"), StorageError);
 }
+
+TEST_CASE("a kept scratch raster can be opened again, and one of another length cannot")
+{
+    TemporaryFolder folder;
+    const Size size{3, 4};
+    Image<std::uint16_t> source(size, std::uint16_t{7});
+    {
+        ScratchRaster<std::uint16_t> raster(folder.path(), "x", size, std::uint16_t{0},
+                                            ScratchLife::kept);
+        raster.write({0, 0, 3, 4}, source.view());
+        raster.sync();
+    }
+    Image<std::uint16_t> read(size);
+    ScratchRaster<std::uint16_t>(folder.path(), "x", size, std::uint16_t{0},
+                                 ScratchLife::existing)
+        .read({0, 0, 3, 4}, read);
+    CHECK(read == source);
+    CHECK(folder.names() == std::vector<std::string>{"x"});
+    const auto open = [&](const char* name, Size asked) {
+        ScratchRaster<std::uint16_t>(folder.path(), name, asked, std::uint16_t{0},
+                                     ScratchLife::existing);
+    };
+    CHECK_THROWS_WITH(open("x", {3, 5}), Contains("has 24 bytes instead of 30"));
+    CHECK_THROWS_WITH(open("y", {3, 5}), Contains("Cannot open the scratch file"));
+}

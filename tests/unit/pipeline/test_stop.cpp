@@ -18,12 +18,15 @@ TEST_CASE("a request to stop ends a run between two tiles")
     std::vector<int> sequence(1000);
     std::iota(sequence.begin(), sequence.end(), 0);
     int written = 0;
-    TileSteps steps{numbered_task, [&](int, const matcher::TileMatch&) {
+    TileSteps steps{numbered_task,
+                    [&](int, const matcher::TileMatch&) {
                         if (++written == 10) {
                             request_stop();
                         }
-                    }};
-    CHECK_THROWS_AS(run_tiles(sequence, steps, fake_workers(2, [](int) {}), 3), Interrupted);
+                    },
+                    {}};
+    CHECK_THROWS_AS(run_tiles_with(sequence, steps, fake_workers(2, [](int) {}), 3),
+                    Interrupted);
     CHECK(written >= 10);
     CHECK(written < 20);
     CHECK_THROWS_AS(check_stop(), Interrupted);

@@ -65,7 +65,8 @@ TEST_CASE("every tile is read, matched and written once")
                     take_a_while(tile);
                     ++matched[static_cast<std::size_t>(tile)];
                 });
-                with_threads(threads, [&] { run_tiles(numbers(100), steps, pool, in_flight); });
+                with_threads(threads,
+                             [&] { run_tiles_with(numbers(100), steps, pool, in_flight); });
                 const auto once = [](int n) { return n == 1; };
                 CHECK(std::all_of(written.begin(), written.end(), once));
                 CHECK(std::all_of(read.begin(), read.end(), once));
@@ -97,7 +98,7 @@ TEST_CASE("no more tiles are in flight than allowed, and writing is one at a tim
             --in_flight;
         };
         const auto pool = fake_workers(4, take_a_while);
-        with_threads(4, [&] { run_tiles(numbers(60), steps, pool, allowed); });
+        with_threads(4, [&] { run_tiles_with(numbers(60), steps, pool, allowed); });
         CHECK(most <= allowed);
         CHECK(most >= 1);
         CHECK(in_flight == 0);
@@ -109,9 +110,9 @@ TEST_CASE("one tile in flight keeps the order of the sequence")
 {
     const std::vector<int> sequence{4, 1, 3, 0, 2};
     std::vector<int> order;
-    TileSteps steps{numbered_task,
-                    [&](int tile, const matcher::TileMatch&) { order.push_back(tile); }};
-    with_threads(4, [&] { run_tiles(sequence, steps, fake_workers(2, keep_nobody), 1); });
+    TileSteps steps{
+        numbered_task, [&](int tile, const matcher::TileMatch&) { order.push_back(tile); }, {}};
+    with_threads(4, [&] { run_tiles_with(sequence, steps, fake_workers(2, keep_nobody), 1); });
     CHECK(order == sequence);
 }
 
@@ -135,14 +136,45 @@ TEST_CASE("an exception of any step ends the run and arrives at the caller")
         };
         steps.write = [&](int tile, const matcher::TileMatch&) { fail_in("write", tile); };
         const auto pool = fake_workers(2, [&](int tile) { fail_in("match", tile); });
-        CHECK_THROWS_WITH(with_threads(4, [&] { run_tiles(numbers(1000), steps, pool, 3); }),
-                          "cannot " + failing + " tile 20");
+        CHECK_THROWS_WITH(
+            with_threads(4, [&] { run_tiles_with(numbers(1000), steps, pool, 3); }),
+            "cannot " + failing + " tile 20");
         CHECK(started < 1000);
     }
 }
 
 TEST_CASE("a run without tiles ends at once")
 {
-    TileSteps steps{numbered_task, [](int, const matcher::TileMatch&) { FAIL("no tile"); }};
-    run_tiles({}, steps, fake_workers(1, keep_nobody), 2);
+    TileSteps steps{numbered_task, [](int, const matcher::TileMatch&) { FAIL("no tile"); }, {}};
+    run_tiles_with({}, steps, fake_workers(1, keep_nobody), 2);
+}
+
+TEST_CASE("where failures are asked for, they are told and the others go on")
+{
+    for (const std::string failing : {"read", "match"}) {
+        std::vector<int> written;
+        std::vector<int> failed;
+        TileSteps steps;
+        steps.read = [&](int tile) {
+            if (failing == "read" && tile % 5 == 0) {
+                throw std::runtime_error("cannot read");
+            }
+            return numbered_task(tile);
+        };
+        steps.write = [&](int tile, const matcher::TileMatch&) { written.push_back(tile); };
+        steps.ended = [&](const MatchOutcome& outcome) {
+            if (outcome.error) {
+                failed.push_back(outcome.tile);
+            }
+        };
+        const auto pool = fake_workers(1, [&](int tile) {
+            if (failing == "match" && tile % 5 == 0) {
+                throw std::runtime_error("cannot match");
+            }
+        });
+        with_threads(2, [&] { run_tiles_with(numbers(50), steps, pool, 3); });
+        std::sort(failed.begin(), failed.end());
+        CHECK(failed == std::vector<int>{0, 5, 10, 15, 20, 25, 30, 35, 40, 45});
+        CHECK(written.size() == 40);
+    }
 }

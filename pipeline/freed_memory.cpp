@@ -1,0 +1,27 @@
+#include "pipeline/freed_memory.h"
+
+#include <limits>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace hsgm::pipeline {
+
+void keep_freed_memory()
+{
+#ifdef __GLIBC__
+    constexpr int kLargestAllowed = 32 << 20; // glibc's own limit of this setting
+    mallopt(M_MMAP_THRESHOLD, kLargestAllowed);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
+void give_back_freed_memory()
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+} // namespace hsgm::pipeline

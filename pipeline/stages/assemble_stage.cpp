@@ -1,0 +1,121 @@
+#include "pipeline/stages/assemble_stage.h"
+
+#include "io/hillshade.h"
+#include "io/quicklook.h"
+#include "pipeline/error.h"
+#include "pipeline/stages/pair_stage.h"
+#include "pipeline/stages/tile_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+using ledger::TileRow;
+using ledger::TileState;
+
+// What keeps a shard from being assembled; empty: nothing.
+std::string missing_in(const PlannedJob& planned, const RunLayout& layout,
+                       const TilesOfRun::OfShard& of)
+{
+    const tiling::Rect band = band_of(planned.shape.left, of.shard);
+    if (band.empty()) {
+        return "";
+    }
+    if (!std::filesystem::exists(layout.tiles_ledger(of.shard))) {
+        return fmt::format("shard {}/{} has not begun", of.shard.index, of.shard.count);
+    }
+    const auto open = std::count_if(of.tiles.begin(), of.tiles.end(), [](const TileRow& row) {
+        return row.state == TileState::pending || row.state == TileState::running;
+    });
+    std::vector<tiling::Rect> known;
+    for (const TileRow& row : of.tiles) {
+        known.push_back(row.rect);
+    }
+    if (open > 0 || !tiling::bounds_of_rest(band, known).empty()) {
+        return fmt::format("shard {}/{} is not finished: {} tiles wait", of.shard.index,
+                           of.shard.count, open);
+    }
+    return "";
+}
+
+void write_hillshade(const OutputPaths& outputs)
+{
+    io::HillshadeOptions options;
+    options.creation_options = outputs.creation_options;
+    if (!io::write_hillshade(outputs.height.string(), outputs.hillshade.string(), options,
+                             [] { return !stop_is_requested(); })) {
+        check_stop();
+    }
+}
+
+// Pictures for people, made from the finished rasters.
+void write_pictures(const OutputPaths& outputs)
+{
+    const auto write = [](const std::filesystem::path& raster,
+                          const std::filesystem::path& picture, io::QuicklookStyle style) {
+        if (!picture.empty()) {
+            io::QuicklookOptions options;
+            options.style = style;
+            io::write_quicklook_png(raster.string(), picture.string(), options);
+        }
+    };
+    write(outputs.disparity, outputs.disparity_picture, io::QuicklookStyle::disparity);
+    write(outputs.hillshade, outputs.hillshade_picture, io::QuicklookStyle::hillshade);
+}
+
+} // namespace
+
+TilesOfRun tiles_of_run(const PlannedJob& planned, const RunLayout& layout, int count)
+{
+    TilesOfRun run;
+    for (int index = 0; index < count; ++index) {
+        TilesOfRun::OfShard of{{index, count}, {}};
+        const auto path = layout.tiles_ledger(of.shard);
+        if (std::filesystem::exists(path)) {
+            of.tiles = ledger::read_ledger(path).tiles;
+            std::erase_if(of.tiles,
+                          [](const TileRow& row) { return row.stage != kMatchStage; });
+        }
+        for (const TileRow& row : of.tiles) {
+            run.done += row.state == TileState::done;
+            if (row.state == TileState::failed) {
+                run.failed.push_back(row);
+            }
+        }
+        if (run.missing.empty()) {
+            run.missing = missing_in(planned, layout, of);
+        }
+        run.shards.push_back(std::move(of));
+    }
+    return run;
+}
+
+MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
+                      const TilesOfRun& tiles, const OwnedLedger& book)
+{
+    const tiling::Rect whole = rect_of(planned.shape.left);
+    const OutputPaths& outputs = planned.job.outputs;
+    MatchSummary summary;
+    book.record("refine", whole, [&] {
+        FirstPass results(planned.shape);
+        for (const auto& of : tiles.shards) {
+            add_results(planned, layout, of.shard, of.tiles, results);
+        }
+        const auto images =
+            open_images(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
+        summary = refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
+    });
+    if (!outputs.hillshade.empty()) {
+        book.record("hillshade", whole, [&] { write_hillshade(outputs); });
+    }
+    if (!outputs.disparity_picture.empty()) {
+        book.record("pictures", whole, [&] { write_pictures(outputs); });
+    }
+    return summary;
+}
+
+} // namespace hsgm::pipeline

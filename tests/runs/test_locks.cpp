@@ -1,0 +1,106 @@
+#include "tests/runs/run_place.h"
+
+#include "tests/catch.h"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+using namespace hsgm;
+using namespace hsgm::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// A run at work on its tiles, stopped so that it stays there.
+class Stopped {
+public:
+    explicit Stopped(const RunPlace& place, const std::vector<std::string>& more = {})
+        : program_(place.command(more))
+    {
+        REQUIRE(comes_true([&] { return program_.has_ended() || place.done() > 0; }));
+        // Not in the middle of a transaction, which would keep others from the ledger.
+        const std::string journal = place.result() + "/ledger/tiles-0-of-1.sqlite-journal";
+        REQUIRE(comes_true([&] {
+            program_.signal(SIGSTOP);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            const bool between = !std::filesystem::exists(journal);
+            program_.signal(between ? SIGSTOP : SIGCONT);
+            return between;
+        }));
+    }
+    Outcome go_on()
+    {
+        program_.signal(SIGCONT);
+        return program_.wait();
+    }
+
+private:
+    RunningProgram program_;
+};
+
+} // namespace
+
+TEST_CASE("a second run in the same folder is refused while the first one works")
+{
+    const RunPlace place = slow_place();
+    Stopped first(place);
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--resume"}, {"--restart"}}) {
+        const Outcome second = place.run_to(6, more);
+        CHECK_THAT(second.err, Contains("process ") && Contains("is at work on") &&
+                                   Contains("name another output folder"));
+    }
+    CHECK(first.go_on().code == 0);
+    CHECK((place.rasters() == place.undisturbed()));
+}
+
+TEST_CASE("a process that takes over leaves the one before it without effect")
+{
+    const RunPlace place = slow_place();
+    const std::vector<std::string> shard{"--shard", "0/1"};
+    Stopped first(place, shard);
+    const Outcome second = place.run_to(0, {"--shard", "0/1", "--resume", "--take-over"});
+    CHECK_THAT(second.err, Contains("taking over from process"));
+    const Snapshot rasters = place.rasters();
+    CHECK((rasters == place.undisturbed()));
+    const Outcome fenced = first.go_on();
+    CHECK(fenced.code == 6);
+    CHECK((place.rasters() == rasters));
+}
+
+TEST_CASE("a process that was taken over in mid-run does no harm to the one after it")
+{
+    const RunPlace place = slow_place();
+    Stopped first(place, {"--shard", "0/1"});
+    {
+        // The next one begins, and is killed; then the first one wakes up again.
+        RunningProgram second(place.command({"--shard", "0/1", "--resume", "--take-over"}));
+        const int before = place.done();
+        REQUIRE(comes_true([&] { return second.has_ended() || place.done() > before + 2; }));
+        second.signal(SIGKILL);
+    }
+    CHECK(first.go_on().code == 6);
+    CHECK_THAT(place.ledger().owners.back().part,
+               Catch::Matchers::Predicate<int>([](int part) { return part == 1; }));
+    place.run_to(0, {"--shard", "0/1", "--resume"});
+    CHECK((place.rasters() == place.undisturbed()));
+}
+
+TEST_CASE("a requeued job takes over from its earlier self, and no other job does")
+{
+    const RunPlace place = slow_place();
+    ::setenv("SLURM_JOB_ID", "71", 1);
+    Stopped first(place, {"--shard", "0/1"});
+    place.run_to(6, {"--shard", "0/1", "--resume"});
+    ::setenv("SLURM_RESTART_COUNT", "1", 1);
+    ::setenv("SLURM_JOB_ID", "72", 1);
+    place.run_to(6, {"--shard", "0/1"});
+    ::setenv("SLURM_JOB_ID", "71", 1);
+    place.run_to(0, {"--shard", "0/1"}); // --resume goes without saying
+    ::unsetenv("SLURM_JOB_ID");
+    ::unsetenv("SLURM_RESTART_COUNT");
+    CHECK(first.go_on().code == 6);
+    CHECK((place.rasters() == place.undisturbed()));
+}
