@@ -219,13 +219,13 @@ private:
         // Two words at a time, that is four costs of each pixel.
 #pragma unroll 1
         for (int i = 0; i < Group::kCostWords; ++i) {
+            prior.next();
             unsigned first[kPixels];
 #pragma unroll
             for (int k = 0; k < kPixels; ++k) {
                 first[k] = cost<kAllValid>(rule, f, k);
             }
             move_on(f, right, --meets);
-            prior.next();
 #pragma unroll
             for (int k = 0; k < kPixels; ++k) {
                 const unsigned bytes = to_bytes(first[k], cost<kAllValid>(rule, f, k));
