@@ -14,7 +14,7 @@ struct PlannedJob {
     matcher::LevelPlan levels;
     Budget budget;
     DevicePlan devices;
-    io::GeoReference geo; ///< of the left image; its rasters inherit it
+    io::GeoReference geo; ///< of a rectified left image; its rasters inherit it
     int pyramid_levels = 1;
 };
 
