@@ -85,8 +85,8 @@ TEST_CASE("what a configuration must say is asked for by key")
     place.refused_config(kPair + kGeometry + kMatcher,
                          {"'output.folder' is missing", "a path"});
     place.refused_config(kPair + kGeometry + kOutput, {"'matcher.disparity' must be given"});
-    place.refused_config(kPair + kOutput + kMatcher + "geometry: {kind: rpc}\n",
-                         {"bad.yaml:4:18", "'geometry.kind'", "rectified", "not 'rpc'"});
+    place.refused_config(kPair + kOutput + kMatcher + "geometry: {kind: frame}\n",
+                         {"bad.yaml:4:18", "'geometry.kind'", "rectified", "not 'frame'"});
 }
 
 TEST_CASE("what does not go together is refused by key")
