@@ -132,17 +132,18 @@ RowParallax measure(const PairGeometry& pair, const SensorImage& left_image,
     return result;
 }
 
+// `rms_px` bounds what was found when this was written; the aim is 0.15 px.
 void check(const SensorImage& left, const SensorImage& right, double lowest_m, double highest_m,
-           double most_px = 0.15)
+           double rms_px)
 {
     const PairGeometry pair = pipeline::find_pair_geometry(left, right, {});
     CAPTURE(left.image.path, pair.heights.low_m, pair.heights.high_m);
     CHECK(pair.heights.low_m < lowest_m);
     CHECK(pair.heights.high_m > highest_m);
-    CHECK(pair.disparity.count() < 130);
+    CHECK(pair.disparity.count() < 110);
     const RowParallax parallax = measure(pair, left, right);
     CHECK(parallax.matches > 200);
-    CHECK(parallax.rms_px < most_px);
+    CHECK(parallax.rms_px < rms_px);
     CHECK(std::abs(parallax.mean_px) < 0.05);
 }
 
@@ -154,13 +155,12 @@ TEST_CASE("real pairs have no row parallax left, and their heights lie within th
         return;
     }
     check(sensor("sat_reunion_pair/img_01.tif"), sensor("sat_reunion_pair/img_02.tif"), 2270,
-          2376);
+          2376, 0.15);
     check(sensor("sat_gizeh_phr/img1.tif", "sat_gizeh_phr/img1.geom"),
-          sensor("sat_gizeh_phr/img2.tif", "sat_gizeh_phr/img2.geom"), 70, 213);
+          sensor("sat_gizeh_phr/img2.tif", "sat_gizeh_phr/img2.geom"), 70, 213, 0.07);
     check(sensor("sat_kahramanmaras_pre/img1.tif", "sat_kahramanmaras_pre/img1.geom"),
-          // 0.15 is the aim; here neither a shift nor one that changes linearly reaches it.
           sensor("sat_kahramanmaras_pre/img2.tif", "sat_kahramanmaras_pre/img2.geom"), 690, 750,
-          0.2);
+          0.18);
 }
 
 TEST_CASE("a known pointing error is found to a twentieth of a pixel")
@@ -199,7 +199,7 @@ TEST_CASE("left and right may be swapped")
     CHECK(std::abs(pair.pointing->shift_px) == Approx(1.4371).margin(0.05));
     CHECK(pair.heights.low_m < 46.4 - 3.3);
     CHECK(pair.heights.high_m > 134.6 - 3.3);
-    CHECK(pair.disparity.count() < 130);
+    CHECK(pair.disparity.count() < 100);
 }
 
 TEST_CASE("images that make no pair are refused in one sentence")
