@@ -80,14 +80,9 @@ public:
 
     /// Upper bound of what `solve_coarse` takes at its peak, images not counted.
     std::int64_t coarse_bytes() const;
-    /// Upper bound of what a coarse solution keeps for the tiles.
-    std::int64_t coarse_kept_bytes() const;
     /// Upper bound of what `match_tile` takes for a square tile of this side with `threads`
     /// threads at work on it: levels' results, window buffers and the images of its support.
     std::int64_t tile_bytes(int tile_size_px, int threads) const;
-    /// Upper bound of what such a tile takes before and after that: the images of its support,
-    /// or its result.
-    std::int64_t waiting_tile_bytes(int tile_size_px) const;
 
 private:
     PairTraits pair_;

@@ -1,4 +1,4 @@
-#include "matcher/matcher.h"
+#include "matcher/memory.h"
 
 #include "matcher/host/level_features.h"
 #include "matcher/kernel.h"
@@ -105,13 +105,14 @@ std::int64_t Matcher::coarse_bytes() const
     return cells * (1 + 2) + path_rows + feature_bytes(whole, options_.cost) + outputs;
 }
 
-std::int64_t Matcher::coarse_kept_bytes() const
+std::int64_t coarse_kept_bytes(const Matcher& matcher)
 {
-    if (!plan_.coarsest_whole || plan_.levels() == 1) {
-        return coarse_bytes(); // where it is the result itself, all of it stays
+    const LevelPlan& plan = matcher.plan();
+    if (!plan.coarsest_whole || plan.levels() == 1) {
+        return matcher.coarse_bytes(); // where it is the result itself, all of it stays
     }
-    const tiling::Size size = plan_.left_sizes.back();
-    return kept_bytes(rect_of(size), plan_.ranges.back().count(), options_) +
+    const tiling::Size size = plan.left_sizes.back();
+    return kept_bytes(rect_of(size), plan.ranges.back().count(), matcher.options()) +
            size.area(); // the tone
 }
 
@@ -136,10 +137,11 @@ std::int64_t Matcher::tile_bytes(int tile_size_px, int threads) const
     return image_bytes(levels) + most + result_bytes(core, plan_) + workers;
 }
 
-std::int64_t Matcher::waiting_tile_bytes(int tile_size_px) const
+std::int64_t waiting_tile_bytes(const Matcher& matcher, int tile_size_px)
 {
-    const Rect core = worst_tile(plan_, options_.window_px, tile_size_px);
-    return std::max(image_bytes(support(core)), result_bytes(core, plan_));
+    const LevelPlan& plan = matcher.plan();
+    const Rect core = worst_tile(plan, matcher.options().window_px, tile_size_px);
+    return std::max(image_bytes(matcher.support(core)), result_bytes(core, plan));
 }
 
 } // namespace hsgm::matcher

@@ -1,5 +1,6 @@
 #include "pipeline/budget.h"
 
+#include "matcher/memory.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
@@ -21,7 +22,7 @@ namespace {
 constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 /// The program and its libraries (51 MiB, measured), stacks, ledgers, and what the allocator
 /// holds back.
-constexpr std::int64_t kBaseBytes = 72 * kMiB;
+constexpr std::int64_t kBaseBytes = 64 * kMiB;
 /// Two sources: a strip of doubles and of pixels each, and GDAL's decoded blocks.
 constexpr std::int64_t kStripBytes = 2 * (16 * kMiB + 4 * kMiB + 8 * kMiB);
 /// Larger tiles repeat less work at their borders, but gain little beyond this.
@@ -49,8 +50,8 @@ void set_tiles(Budget& budget, const matcher::Matcher& matcher, int tile)
     const std::int64_t tile_bytes = matcher.tile_bytes(tile, 0);
     const std::int64_t thread_bytes = matcher.tile_bytes(tile, 1) - tile_bytes;
     budget.tiles_bytes =
-        kBaseBytes + matcher.coarse_kept_bytes() + budget.workers * tile_bytes +
-        (budget.tiles_in_flight - budget.workers) * matcher.waiting_tile_bytes(tile) +
+        kBaseBytes + matcher::coarse_kept_bytes(matcher) + budget.workers * tile_bytes +
+        (budget.tiles_in_flight - budget.workers) * matcher::waiting_tile_bytes(matcher, tile) +
         budget.threads * thread_bytes;
     budget.estimate_bytes = std::max(
         {budget.prepare_bytes, budget.coarse_bytes, budget.tiles_bytes, budget.refine_bytes});
