@@ -9,6 +9,7 @@
 
 #include <gdal_utils.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -65,7 +66,43 @@ DemOptions gdal_options(const HillshadeOptions& options, double azimuth_deg,
     return DemOptions(GDALDEMProcessingOptionsNew(list.List(), nullptr));
 }
 
+/// Room in GDAL's block cache while it lives. GDAL shades row by row and wants the blocks of
+/// three rows at hand; in too little room it would decode each block anew for each of its rows.
+class CacheRoom {
+public:
+    explicit CacheRoom(GIntBig bytes) : before_(GDALGetCacheMax64())
+    {
+        GDALSetCacheMax64(std::max(before_, bytes));
+    }
+    ~CacheRoom() { GDALSetCacheMax64(before_); }
+    CacheRoom(const CacheRoom&) = delete;
+    CacheRoom& operator=(const CacheRoom&) = delete;
+
+private:
+    GIntBig before_;
+};
+
+/// Asks whether to go on, for GDAL.
+struct Question {
+    const std::function<bool()>& go_on;
+    bool refused = false;
+
+    static int ask(double, const char*, void* question)
+    {
+        auto& q = *static_cast<Question*>(question);
+        q.refused = q.refused || (q.go_on && !q.go_on());
+        return q.refused ? FALSE : TRUE;
+    }
+};
+
 } // namespace
+
+std::int64_t hillshade_bytes(tiling::Size size)
+{
+    // Two rows of blocks of heights, and two of shades.
+    constexpr std::int64_t kBlock = 256;
+    return (size.cols + kBlock) * kBlock * 2 * (sizeof(float) + 1);
+}
 
 void HillshadeOptions::validate() const
 {
@@ -75,21 +112,27 @@ void HillshadeOptions::validate() const
     check("scale", scale, scale > 0, "above 0");
 }
 
-void write_hillshade(const std::string& height_path, const std::string& output_path,
-                     const HillshadeOptions& options)
+bool write_hillshade(const std::string& height_path, const std::string& output_path,
+                     const HillshadeOptions& options, const std::function<bool()>& go_on)
 {
     options.validate();
     const Dataset height = open_raster(height_path);
     const CPLStringList creation =
         geotiff_options(output_path, PixelType::uint8, options.creation_options);
     PendingFile file(output_path);
+    const CacheRoom room(hillshade_bytes(size_of(height.get())));
     ErrorCollector errors;
     const DemOptions dem_options =
         gdal_options(options, azimuth_for(height.get(), options.azimuth_deg), creation);
+    Question question{go_on};
+    GDALDEMProcessingOptionsSetProgress(dem_options.get(), Question::ask, &question);
     Dataset shaded(GDALDEMProcessing(file.temporary_path().c_str(), height.get(), "hillshade",
                                      nullptr, dem_options.get(), nullptr));
     const bool made = shaded != nullptr;
     shaded.reset();
+    if (question.refused) {
+        return false;
+    }
     if (!made || errors.failed()) {
         throw StorageError("Cannot shade " + height_path + " into " + output_path + "; " +
                            errors.quote() + ".");
@@ -97,6 +140,7 @@ void write_hillshade(const std::string& height_path, const std::string& output_p
     check_stored_blocks(file, size_of(height.get()), PixelType::uint8,
                         creation.FetchBool("SPARSE_OK", false));
     file.publish();
+    return true;
 }
 
 } // namespace hsgm::io

@@ -1,5 +1,9 @@
 #pragma once
 
+#include "tiling/rect.h"
+
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +29,13 @@ struct HillshadeOptions {
 
 /// Shades a height raster into a GeoTIFF of 8 bits, 1 to 255, 0 where there is no height, by
 /// GDAL's gdaldem. Takes its final name when whole. Throws InputError for an unreadable
-/// height file, StorageError where the output cannot be written.
-void write_hillshade(const std::string& height_path, const std::string& output_path,
-                     const HillshadeOptions& options = {});
+/// height file, StorageError where the output cannot be written. `go_on` is asked now and then;
+/// where it says no, nothing is written and the answer is false.
+bool write_hillshade(const std::string& height_path, const std::string& output_path,
+                     const HillshadeOptions& options = {},
+                     const std::function<bool()>& go_on = {});
+
+/// GDAL's block cache while it shades a raster of that size.
+std::int64_t hillshade_bytes(tiling::Size size);
 
 } // namespace hsgm::io

@@ -1,5 +1,6 @@
 #include "pipeline/budget.h"
 
+#include "io/hillshade.h"
 #include "matcher/memory.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/first_pass.h"
@@ -114,7 +115,10 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.prepare_bytes =
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
-    budget.refine_bytes = kBaseBytes + refine_bytes(shape, job.matcher, budget.threads);
+    budget.refine_bytes =
+        kBaseBytes +
+        std::max(refine_bytes(shape, job.matcher, budget.threads),
+                 job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shape.left));
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
         budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);

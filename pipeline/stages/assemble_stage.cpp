@@ -2,6 +2,7 @@
 
 #include "io/hillshade.h"
 #include "io/quicklook.h"
+#include "pipeline/error.h"
 #include "pipeline/stages/pair_stage.h"
 #include "pipeline/stages/tile_stage.h"
 
@@ -45,7 +46,10 @@ void write_hillshade(const OutputPaths& outputs)
 {
     io::HillshadeOptions options;
     options.creation_options = outputs.creation_options;
-    io::write_hillshade(outputs.height.string(), outputs.hillshade.string(), options);
+    if (!io::write_hillshade(outputs.height.string(), outputs.hillshade.string(), options,
+                             [] { return !stop_is_requested(); })) {
+        check_stop();
+    }
 }
 
 // Pictures for people, made from the finished rasters.

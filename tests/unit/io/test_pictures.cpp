@@ -84,6 +84,9 @@ TEST_CASE("a slope that faces the light is brighter than one that turns away")
     CHECK_THROWS_WITH(write_hillshade(folder / "slope.tif", folder / "x.tif", options),
                       Contains("z_factor") && Contains("above 0"));
     CHECK_THROWS_AS(write_hillshade(folder / "absent.tif", folder / "x.tif"), InputError);
+    CHECK_FALSE(
+        write_hillshade(folder / "slope.tif", folder / "x.tif", {}, [] { return false; }));
+    CHECK_FALSE(std::filesystem::exists(folder / "x.tif"));
 }
 
 TEST_CASE("the top of a raster without georeference is north to the light")
