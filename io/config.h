@@ -75,7 +75,7 @@ public:
     std::string path(const std::string& key);
     std::optional<std::string> optional_path(const std::string& key);
     std::string path_or(const std::string& key, const std::string& default_value);
-    /// A path, or a map {path, band, nodata, mask}; must be given. `band: auto` is the
+    /// A path, or a map {path, band, nodata, mask, rpc}; must be given. `band: auto` is the
     /// default; `nodata: none` switches the file's own off.
     ImageSpec image(const std::string& key);
 

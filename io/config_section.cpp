@@ -218,6 +218,7 @@ ImageSpec ConfigSection::image(const std::string& key)
             part.number_or("nodata", "none").value_or(std::numeric_limits<double>::quiet_NaN());
     }
     spec.mask = part.optional_path("mask").value_or("");
+    spec.rpc = part.optional_path("rpc").value_or("");
     return spec;
 }
 

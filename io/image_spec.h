@@ -17,6 +17,8 @@ struct ImageSpec {
     std::optional<double> nodata = std::nullopt;
     /// A raster file of the same size whose zeros mark pixels without a value; may be empty.
     std::string mask = "";
+    /// A file with the image's camera model; empty: what the image carries or lies beside it.
+    std::string rpc = "";
 };
 
 } // namespace hsgm::io

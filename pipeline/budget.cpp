@@ -6,6 +6,7 @@
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/stages/refine_stage.h"
+#include "pipeline/stages/satellite_stage.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>
@@ -81,8 +82,10 @@ std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_give
 
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
-    const int floats = 1 + !job.outputs.height.empty() + !job.outputs.depth.empty();
-    return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty());
+    const int floats =
+        1 + job.geometry.height_per_px_m.has_value() + !job.outputs.depth.empty();
+    return shape.left.area() * (4 * floats + 1 + 2 + !job.outputs.hillshade.empty()) +
+           (job.satellite ? satellite_output_bytes(job) : 0);
 }
 
 } // namespace
@@ -115,10 +118,16 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.prepare_bytes =
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
+    // A map may lie askew to the frame: as wide as its two sides together.
+    const tiling::Size shaded{shape.left.rows,
+                              shape.left.cols + (job.satellite ? shape.left.rows : 0)};
     budget.refine_bytes =
-        kBaseBytes +
-        std::max(refine_bytes(shape, job.matcher, budget.threads),
-                 job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shape.left));
+        kBaseBytes + std::max(refine_bytes(shape, job.matcher, budget.threads),
+                              job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shaded));
+    if (job.satellite) {
+        budget.refine_bytes =
+            std::max(budget.refine_bytes, kBaseBytes + satellite_bytes(job, budget.threads));
+    }
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
         budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);

@@ -4,6 +4,7 @@
 #include "matcher/profile.h"
 #include "pipeline/budget.h"
 #include "pipeline/error.h"
+#include "pipeline/satellite_configuration.h"
 
 #include <fmt/format.h>
 
@@ -130,14 +131,22 @@ RectifiedGeometry read_geometry(ConfigSection section)
     return geometry;
 }
 
-OutputPaths output_paths(const std::filesystem::path& folder, const RectifiedGeometry& geometry,
-                         bool hillshade, bool quicklooks)
+OutputPaths output_paths(const std::filesystem::path& folder, const Job& job, bool hillshade,
+                         bool quicklooks)
 {
+    const RectifiedGeometry& geometry = job.geometry;
     OutputPaths outputs;
     outputs.disparity = folder / "disparity.tif";
     outputs.confidence = folder / "confidence.tif";
     outputs.reasons = folder / "reasons.tif";
-    if (geometry.height_per_px_m) {
+    if (job.satellite) {
+        outputs.residual = folder / "residual.tif";
+        outputs.dsm = folder / "dsm.tif";
+        outputs.dsm_confidence = folder / "dsm.confidence.tif";
+        outputs.dsm_points = folder / "dsm.points.tif";
+        outputs.dsm_spread = folder / "dsm.spread.tif";
+    }
+    if (geometry.height_per_px_m || job.satellite) {
         outputs.height = folder / "height.tif";
         if (hillshade) {
             outputs.hillshade = folder / "hillshade.tif";
@@ -160,21 +169,44 @@ OutputPaths output_paths(const std::filesystem::path& folder, const RectifiedGeo
 void require_kind(const ConfigSection& section, const std::string& kind)
 {
     if (kind.empty()) {
-        section.fail("kind", "is missing: it must be rectified in this version");
+        section.fail("kind", "is missing: it must be rectified or rpc in this version");
     }
-    if (kind != "rectified") {
-        section.fail("kind", fmt::format("must be rectified in this version, not '{}'", kind));
+    if (kind != "rectified" && kind != "rpc") {
+        section.fail("kind",
+                     fmt::format("must be rectified or rpc in this version, not '{}'", kind));
     }
 }
 
+// Rectified pairs need it; of raw ones the program finds it from the heights.
 tiling::DisparityRange require_disparity(const ConfigSection& section,
-                                         const std::optional<std::pair<int, int>>& range)
+                                         const std::optional<std::pair<int, int>>& range,
+                                         const Job& job)
 {
+    if (job.satellite) {
+        if (range) {
+            section.fail("disparity", "is found by the program for geometry rpc: leave it out, "
+                                      "or give geometry.heights_m");
+        }
+        return {};
+    }
     if (!range) {
         section.fail("disparity", "must be given as [min, max] in pixels for geometry "
                                   "rectified, which holds no heights to find it from");
     }
     return {range->first, range->second};
+}
+
+// Keys of one kind that say something in another.
+void refuse_mixtures(const ConfigSection& pair, const ConfigSection& geometry, const Job& job)
+{
+    if (job.satellite && (job.geometry.height_per_px_m || job.geometry.focal_px)) {
+        geometry.fail(job.geometry.focal_px ? "focal_px" : "height_per_px_m",
+                      "is for geometry kind rectified only: leave it out");
+    }
+    if (!job.satellite && !(job.left.rpc.empty() && job.right.rpc.empty())) {
+        pair.fail(job.left.rpc.empty() ? "right.rpc" : "left.rpc",
+                  "is for geometry kind rpc only: leave it out");
+    }
 }
 
 } // namespace
@@ -201,6 +233,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     const std::string kind = geometry.text("kind", "");
     const auto disparity = matcher.range_or("disparity", "auto");
     job.geometry = read_geometry(geometry);
+    job.satellite = read_satellite(geometry, root.section("dsm"), kind);
     const auto creation_options = output.texts("creation_options");
     const bool hillshade = output.flag("hillshade", true);
     const bool quicklooks = output.flag("quicklooks", false);
@@ -214,11 +247,12 @@ Configuration read_configuration(io::ConfigDocument& document)
     }
     document.refuse_unknown();
     require_kind(geometry, kind);
-    job.disparity = require_disparity(matcher, disparity);
+    job.disparity = require_disparity(matcher, disparity, job);
     job.left = pair.image("left");
     job.right = pair.image("right");
+    refuse_mixtures(pair, geometry, job);
     configuration.folder = output.path("folder");
-    job.outputs = output_paths(configuration.folder, job.geometry, hillshade, quicklooks);
+    job.outputs = output_paths(configuration.folder, job, hillshade, quicklooks);
     job.outputs.creation_options = creation_options;
     configuration.used_yaml = document.effective_yaml();
     return configuration;

@@ -4,6 +4,19 @@
 
 namespace hsgm::pipeline {
 
+std::vector<std::filesystem::path> OutputPaths::files() const
+{
+    std::vector<std::filesystem::path> asked;
+    for (const auto& path :
+         {disparity, confidence, reasons, height, depth, residual, dsm, dsm_confidence,
+          dsm_points, dsm_spread, hillshade, disparity_picture, hillshade_picture}) {
+        if (!path.empty()) {
+            asked.push_back(path);
+        }
+    }
+    return asked;
+}
+
 std::map<std::string, std::string> provenance(const Job& job)
 {
     const matcher::Options m = job.matcher.resolved();

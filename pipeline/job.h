@@ -2,6 +2,7 @@
 
 #include "io/image_spec.h"
 #include "matcher/options.h"
+#include "pipeline/satellite_options.h"
 #include "tiling/disparity_range.h"
 #include "tiling/tile_plan.h"
 
@@ -43,19 +44,28 @@ struct OutputPaths {
     std::filesystem::path reasons;
     std::filesystem::path height; ///< empty: not asked for; likewise below
     std::filesystem::path depth;
+    std::filesystem::path residual; ///< of raw pairs, as are the four of the DSM
+    std::filesystem::path dsm;
+    std::filesystem::path dsm_confidence;
+    std::filesystem::path dsm_points;
+    std::filesystem::path dsm_spread;
     std::filesystem::path hillshade;
     std::filesystem::path disparity_picture; ///< PNG, as is hillshade_picture
     std::filesystem::path hillshade_picture;
     std::vector<std::string> creation_options; ///< GDAL's KEY=VALUE, for every raster
+
+    /// All files that are asked for.
+    std::vector<std::filesystem::path> files() const;
 };
 
-/// One rectified pair to be matched: all that is known before a pixel is read.
+/// One pair to be matched: all that is known before a pixel is read.
 struct Job {
     io::ImageSpec left;
     io::ImageSpec right;
     tiling::DisparityRange disparity;
     matcher::Options matcher;
     RectifiedGeometry geometry;
+    std::optional<SatelliteOptions> satellite; ///< given: the pair is raw, with RPCs
     RunOptions run;
     OutputPaths outputs;
 };

@@ -2,6 +2,7 @@
 
 #include "matcher/reasons.h"
 #include "pipeline/run_log.h"
+#include "pipeline/stages/satellite_record.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,6 +87,13 @@ void print_table(const PlannedJob& planned)
 void log_plan(const PlannedJob& planned)
 {
     const auto range = planned.shape.asked;
+    if (planned.job.satellite) {
+        const geometry::PairGeometry& pair = *planned.job.satellite->pair;
+        spdlog::info("{}", describe_geometry(pair));
+        for (const std::string& warning : pair.warnings) {
+            spdlog::warn("{}", warning);
+        }
+    }
     spdlog::info(
         "{} x {} px, disparities {}..{}, mode {}, cost {}, {} levels; tiles {}; at most "
         "{:.0f} MiB",
@@ -111,6 +119,14 @@ void log_summary(const MatchSummary& summary, const PlannedJob& planned)
     spdlog::info("{}: {:.1f} % of the pixels have a value{}{}",
                  planned.job.outputs.disparity.string(), percent(summary.with_value),
                  reasons.empty() ? "" : "; ", reasons);
+    if (summary.dsm) {
+        const dsm::DsmGrid& grid = summary.dsm->grid;
+        spdlog::info("{}: {} x {} cells of {:g}, {:.1f} % of them with a height",
+                     planned.job.outputs.dsm.string(), grid.size.cols, grid.size.rows,
+                     grid.cell,
+                     100.0 * static_cast<double>(summary.dsm->cells_with_value) /
+                         static_cast<double>(grid.size.area()));
+    }
 }
 
 void print_plan(const PlannedJob& planned, bool json)

@@ -8,6 +8,7 @@
 #include "pipeline/error.h"
 #include "pipeline/stages/fingerprint_stage.h"
 #include "pipeline/stages/match_stage.h"
+#include "pipeline/stages/stored_geometry.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -31,13 +32,18 @@ The least configuration of a rectified pair:
   geometry: {kind: rectified}
   matcher: {disparity: [0, 63]}
   output: {folder: result}
+and of a raw satellite pair with RPCs:
+  pair: {left: left.tif, right: right.tif}
+  geometry: {kind: rpc}
+  output: {folder: result}
 Paths are relative to the configuration file. docs/configuration.md explains every key.)";
 
 constexpr const char* kPlanHelp = R"(Examples:
   hsgm plan configs/demo.yaml
   hsgm plan city.yaml --memory 2GiB --json
 
-Opens the inputs, reads no pixels, and tells levels, tiles, memory and disk of the run.)";
+Opens the inputs and tells levels, tiles, memory and disk of the run. Reads no pixels, but of raw
+pairs, whose geometry must be found first.)";
 
 struct Arguments {
     std::string config;
@@ -102,7 +108,9 @@ void run(const Arguments& arguments)
 {
     const Loaded loaded = load(arguments);
     RunManner manner = manner_of(arguments, loaded);
-    const PlannedJob planned = plan_job(loaded.configuration.job);
+    Job job = loaded.configuration.job;
+    take_kept_geometry(job, manner);
+    const PlannedJob planned = plan_job(job);
     if (arguments.dry_run) {
         print_plan(planned, false);
         return;

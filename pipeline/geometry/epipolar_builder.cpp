@@ -117,6 +117,7 @@ private:
     double bulge_m_ = 0;
     MapPoint centre_;
     Vector along_; // unit vector along the rows at the centre
+    double images_gsd_m_ = 0;
     double gsd_m_ = 0;
     double ratio_ = 0;   // metres of parallax for a metre of height, at the centre
     double reach_m_ = 0; // how far heights move a place along the surface, at most
@@ -223,7 +224,8 @@ void Builder::find_centre()
     reach_m_ =
         std::max(ray_slope(left_, centre_).length(), ray_slope(right_, centre_).length()) *
         std::max(std::abs(options_.below_m), std::abs(options_.above_m));
-    gsd_m_ = options_.gsd_m > 0 ? options_.gsd_m : std::sqrt(own_gsd(left_) * own_gsd(right_));
+    images_gsd_m_ = std::sqrt(own_gsd(left_) * own_gsd(right_));
+    gsd_m_ = options_.gsd_m > 0 ? options_.gsd_m : options_.finer * images_gsd_m_;
 }
 
 /// A step along the rows by Runge and Kutta's rule of fourth order.
@@ -269,6 +271,7 @@ void Builder::follow_row(Lattice& map, int i) const
 EpipolarFrame Builder::laid(const Extent& extent, int step_px) const
 {
     EpipolarFrame frame;
+    frame.images_gsd_m = images_gsd_m_;
     frame.gsd_m = gsd_m_;
     frame.px_per_m = ratio_ / gsd_m_;
     frame.angle_rad = std::atan2(along_.y, along_.x);

@@ -67,6 +67,9 @@ void FrameOptions::validate() const
         throw std::invalid_argument("gsd_m must be 0 (the images' own) or more, not " +
                                     std::to_string(gsd_m));
     }
+    if (!(finer > 0) || !std::isfinite(finer)) {
+        throw std::invalid_argument("finer must be above 0, not " + std::to_string(finer));
+    }
     if (!(below_m < above_m)) {
         throw std::invalid_argument(
             "the lowest height over the surface, " + std::to_string(below_m) +

@@ -31,8 +31,9 @@ struct FramePoint {
 /// pair and then only read: its lattices define which pixel of a source a pixel of the frame
 /// shows, so that everybody who has them agrees to the last bit.
 struct EpipolarFrame {
-    tiling::Size size;    ///< of both resampled images
-    double gsd_m = 0;     ///< step of the grid along rows, and across them at its centre
+    tiling::Size size;       ///< of both resampled images
+    double gsd_m = 0;        ///< step of the grid along rows, and across them at its centre
+    double images_gsd_m = 0; ///< geometric mean of both images' ground sampling distances
     double px_per_m = 0;  ///< disparity of a metre of height above the surface, at the centre
     double angle_rad = 0; ///< direction of the rows at the centre, anticlockwise from east
     double below_m = 0;   ///< heights over the surface that the frame was made for: lowest,
@@ -54,7 +55,8 @@ struct EpipolarFrame {
 
 /// What a frame is made for. Lengths are in metres.
 struct FrameOptions {
-    double gsd_m = 0;            ///< 0: the geometric mean of both images'
+    double gsd_m = 0;            ///< 0: the geometric mean of both images', times `finer`
+    double finer = 1;            ///< above 0
     double below_m = -100;       ///< lowest height over the surface that matters
     double above_m = 100;        ///< highest
     Polygon region;              ///< convex part of the map that matters; empty: everything

@@ -243,6 +243,12 @@ GeodeticPoint MapProjection::inverse(const MapPoint& place) const
     return {here.xyz.x, here.xyz.y, here.xyz.z};
 }
 
+std::string MapProjection::text() const
+{
+    return handles_->vertical_text.empty() ? handles_->crs_text
+                                           : handles_->crs_text + "+" + handles_->vertical_text;
+}
+
 const std::string& MapProjection::name() const
 {
     return handles_->name;

@@ -32,6 +32,8 @@ public:
     MapPoint forward(const GeodeticPoint& ground) const;
     GeodeticPoint inverse(const MapPoint& place) const;
 
+    /// What `from_text` made it from, the vertical system joined by a plus sign.
+    std::string text() const;
     /// For people: "WGS 84 / UTM zone 40S".
     const std::string& name() const;
     /// For people: "height above the WGS84 ellipsoid", "EGM96 height".

@@ -274,4 +274,16 @@ ImageCorrection joined(const ImageCorrection& a, const ImageCorrection& b)
     return c;
 }
 
+Pointing joined(const Pointing& rough, const Pointing& then)
+{
+    Pointing both = then;
+    both.correction = joined(rough.correction, then.correction);
+    both.shift_px += rough.shift_px;
+    // The mean of the squares is the square of the mean and what lies round it.
+    const double spread =
+        then.rms_before_px * then.rms_before_px - then.shift_px * then.shift_px;
+    both.rms_before_px = std::sqrt(std::max(spread, 0.0) + both.shift_px * both.shift_px);
+    return both;
+}
+
 } // namespace hsgm::geometry

@@ -42,4 +42,8 @@ Pointing estimate_pointing(const EpipolarFrame& frame, std::span<const TiePoint>
 /// The correction that does first one, then the other.
 ImageCorrection joined(const ImageCorrection& first, const ImageCorrection& then);
 
+/// What a pair knows that was corrected by a rough shift first: the later finding, told
+/// against the uncorrected image.
+Pointing joined(const Pointing& rough, const Pointing& then);
+
 } // namespace hsgm::geometry

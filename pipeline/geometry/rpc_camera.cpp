@@ -92,6 +92,17 @@ RpcModel crop(RpcModel model, ImagePoint first)
     return model;
 }
 
+RpcModel reduced(RpcModel model, int factor)
+{
+    // The centre of the first coarse pixel lies between the centres of its pixels.
+    const double middle = (factor - 1) / 2.0;
+    model.samp_off = (model.samp_off - middle) / factor;
+    model.line_off = (model.line_off - middle) / factor;
+    model.samp_scale /= factor;
+    model.line_scale /= factor;
+    return model;
+}
+
 RpcCamera::RpcCamera(const RpcModel& model, const ImageCorrection& correction)
     : model_(model), correction_(correction)
 {

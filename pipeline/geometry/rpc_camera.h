@@ -34,6 +34,9 @@ struct RpcModel {
 /// The model of a part of an image whose first pixel is pixel `first` of the whole.
 RpcModel crop(RpcModel model, ImagePoint first);
 
+/// The model of an image whose pixels are the means of `factor` x `factor` pixels.
+RpcModel reduced(RpcModel model, int factor);
+
 /// What is added to the image points of a model to mend its pointing: an affine function of
 /// the point itself, in pixels. All zero: nothing.
 struct ImageCorrection {

@@ -4,6 +4,7 @@
 #include "io/quicklook.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/pair_stage.h"
+#include "pipeline/stages/satellite_stage.h"
 #include "pipeline/stages/tile_stage.h"
 
 #include <fmt/format.h>
@@ -46,7 +47,8 @@ void write_hillshade(const OutputPaths& outputs)
 {
     io::HillshadeOptions options;
     options.creation_options = outputs.creation_options;
-    if (!io::write_hillshade(outputs.height.string(), outputs.hillshade.string(), options,
+    const auto& heights = outputs.dsm.empty() ? outputs.height : outputs.dsm;
+    if (!io::write_hillshade(heights.string(), outputs.hillshade.string(), options,
                              [] { return !stop_is_requested(); })) {
         check_stop();
     }
@@ -109,6 +111,9 @@ MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
             open_images(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
         summary = refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
     });
+    if (planned.job.satellite) {
+        book.record("dsm", whole, [&] { summary.dsm = write_satellite_heights(planned.job); });
+    }
     if (!outputs.hillshade.empty()) {
         book.record("hillshade", whole, [&] { write_hillshade(outputs); });
     }

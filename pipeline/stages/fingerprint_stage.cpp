@@ -3,6 +3,7 @@
 #include "io/file_identity.h"
 #include "io/raster_source.h"
 #include "pipeline/ledger/checksum.h"
+#include "pipeline/stages/pair_sources.h"
 #include "pipeline/stages/pixel_checksum.h"
 
 #include <fmt/format.h>
@@ -63,6 +64,11 @@ ledger::Facts fingerprint(const PlannedJob& planned, const ledger::Facts& settin
     facts["program"] = "hsgm " HSGM_VERSION;
     describe("left image", planned.job.left, facts);
     describe("right image", planned.job.right, facts);
+    if (planned.job.satellite) {
+        ledger::Checksum sum;
+        sum.add_values(std::span<const char>(to_json(*planned.job.satellite->pair)));
+        facts["geometry found"] = "checksum " + sum.hex();
+    }
     return facts;
 }
 
@@ -102,11 +108,10 @@ std::vector<std::string> changed_pixels(const PlannedJob& planned, const ledger:
         return {};
     }
     spdlog::info("the images have been touched since; comparing all of their pixels");
-    FileSource left{io::RasterSource(planned.job.left)};
-    FileSource right{io::RasterSource(planned.job.right)};
+    const PairSources sources = open_sources(planned.job);
     PairChecksums checksums;
-    tbb::parallel_invoke([&] { checksums.left = checksum_of(left); },
-                         [&] { checksums.right = checksum_of(right); });
+    tbb::parallel_invoke([&] { checksums.left = checksum_of(*sources.left); },
+                         [&] { checksums.right = checksum_of(*sources.right); });
     return ledger::differences(before, pixels_in(pixel_facts(checksums, now)));
 }
 

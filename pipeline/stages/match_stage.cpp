@@ -13,6 +13,7 @@
 #include "pipeline/stages/pair_stage.h"
 #include "pipeline/stages/report_stage.h"
 #include "pipeline/stages/run_record.h"
+#include "pipeline/stages/stored_geometry.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -193,6 +194,7 @@ void Run::do_coarse()
     }
     try {
         (*book)->set_facts(as_facts(fingerprint_));
+        keep_geometry(planned_.job, layout_);
         prepare_pair(planned_, layout_, *book, manner_.is_durable());
         give_back_freed_memory();
     } catch (...) {
@@ -271,9 +273,8 @@ void Run::do_assemble()
 // at work on them.
 void Run::remove_leftovers(const OutputPaths& o) const
 {
-    for (const auto& path : {o.disparity, o.confidence, o.reasons, o.height, o.depth,
-                             o.hillshade, o.disparity_picture, o.hillshade_picture}) {
-        if (!path.empty() && manner_.is_durable()) {
+    for (const auto& path : o.files()) {
+        if (manner_.is_durable()) {
             io::remove_unpublished(path.string());
         }
     }
@@ -291,6 +292,7 @@ void Run::finish(const OwnedLedger& book, const TilesOfRun& tiles)
     if (!manner_.used_yaml.empty()) {
         io::write_text_file((layout_.root / "config.used.yaml").string(), manner_.used_yaml);
     }
+    publish_geometry(planned_.job, layout_);
     io::write_text_file((layout_.root / "run.json").string(), record.dump(2) + "\n");
     mark_assembled(book, tiles.failed.size(), tiles.done);
     write_report(layout_);

@@ -38,11 +38,8 @@ void check_outputs(const Job& job)
     const OutputPaths& o = job.outputs;
     const std::vector<path> inputs{job.left.path, job.right.path, job.left.mask,
                                    job.right.mask};
-    for (const path& output : {o.disparity, o.confidence, o.reasons, o.height, o.depth,
-                               o.hillshade, o.disparity_picture, o.hillshade_picture}) {
-        if (!output.empty()) {
-            check_place(output, inputs);
-        }
+    for (const path& output : o.files()) {
+        check_place(output, inputs);
     }
     io::check_creation_options(o.disparity, io::PixelType::float32, o.creation_options);
     io::check_creation_options(o.confidence, io::PixelType::uint8, o.creation_options);

@@ -4,6 +4,7 @@
 #include "io/raster_source.h"
 #include "pipeline/cancellable.h"
 #include "pipeline/stages/fingerprint_stage.h"
+#include "pipeline/stages/pair_sources.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -103,11 +104,11 @@ void prepare_images(const PlannedJob& planned, const RunLayout& layout, const Ow
     std::error_code none;
     std::filesystem::remove_all(layout.pair(), none);
     std::filesystem::create_directories(layout.pair(), none);
-    FileSource left{io::RasterSource(planned.job.left)};
-    FileSource right{io::RasterSource(planned.job.right)};
+    const PairSources sources = open_sources(planned.job);
     const std::string stamp = stamp_of(planned); // whoever touches them from now on is noticed
     PairChecksums checksums;
-    PreparedPair images(left, right, planned.pyramid_levels, layout.pair(), checksums);
+    PreparedPair images(*sources.left, *sources.right, planned.pyramid_levels, layout.pair(),
+                        checksums);
     if (durable) {
         images.sync();
     }

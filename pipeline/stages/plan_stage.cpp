@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "io/raster_source.h"
 #include "pipeline/stages/output_check.h"
+#include "pipeline/stages/satellite_stage.h"
 
 #include <fmt/format.h>
 
@@ -48,17 +49,23 @@ PlannedJob plan_job(const Job& job)
 {
     const io::RasterSource left(job.left);
     const io::RasterSource right(job.right);
-    check_sizes(left, right);
     check_outputs(job);
     PlannedJob planned;
     planned.job = job;
-    planned.shape = {left.size(), right.size(), job.disparity};
-    planned.geo = left.geo_reference();
+    if (job.satellite) {
+        plan_satellite(planned.job);
+        const tiling::Size frame = planned.job.satellite->pair->frame.size;
+        planned.shape = {frame, frame, planned.job.disparity};
+    } else {
+        check_sizes(left, right);
+        planned.shape = {left.size(), right.size(), job.disparity};
+        planned.geo = left.geo_reference();
+    }
     try {
         const Matcher matcher(planning_traits(planned.shape), job.matcher);
         planned.levels = matcher.plan();
         planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
-        planned.budget = make_budget(matcher, job, planned.pyramid_levels);
+        planned.budget = make_budget(matcher, planned.job, planned.pyramid_levels);
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }

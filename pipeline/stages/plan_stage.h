@@ -12,7 +12,7 @@ struct PlannedJob {
     matcher::PairShape shape;
     matcher::LevelPlan levels;
     Budget budget;
-    io::GeoReference geo; ///< of the left image; its rasters inherit it
+    io::GeoReference geo; ///< of a rectified left image; its rasters inherit it
     int pyramid_levels = 1;
 };
 

@@ -98,7 +98,7 @@ public:
                       raster_options(job, geo, "confidence (0 = no value)")),
           reasons_(job.outputs.reasons, size, io::PixelType::uint16, reason_options(job, geo))
     {
-        if (!job.outputs.height.empty()) {
+        if (job.geometry.height_per_px_m) {
             height_.emplace(job.outputs.height, size, io::PixelType::float32,
                             float_options(job, geo, "height", "metre"));
         }
@@ -204,7 +204,7 @@ MatchSummary refine_and_write(const FirstPass& first_pass, const PreparedPair& p
         piece->rect = rect;
         piece->refined = matcher::refine(
             rect, read_piece(rect, first_pass, prepared, shape, options), shape, options);
-        if (!job.outputs.height.empty()) {
+        if (job.geometry.height_per_px_m) {
             piece->height = heights(piece->refined.disparity_px, job.geometry);
         }
         if (!job.outputs.depth.empty()) {

@@ -2,10 +2,13 @@
 
 #include "io/geo_reference.h"
 #include "pipeline/job.h"
+#include "pipeline/stages/dsm_stage.h"
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 namespace hsgm::pipeline {
 
@@ -15,6 +18,7 @@ struct MatchSummary {
     std::int64_t with_value = 0;
     /// Pixels that carry each bit of the reasons raster.
     std::array<std::int64_t, 16> with_reason{};
+    std::optional<DsmSummary> dsm; ///< of raw pairs
 };
 
 /// The second pass: checks, fractions and filters of the whole image, written as

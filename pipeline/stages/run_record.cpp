@@ -3,6 +3,7 @@
 #include "matcher/reasons.h"
 #include "pipeline/ledger/checksum.h"
 #include "pipeline/stages/evaluate_stage.h"
+#include "pipeline/stages/satellite_record.h"
 #include "pipeline/stages/tile_stage.h"
 
 #include <fmt/format.h>
@@ -160,12 +161,9 @@ ordered_json seams_json(const PlannedJob& planned)
 ordered_json outputs_json(const OutputPaths& o)
 {
     ordered_json json;
-    for (const auto& path : {o.disparity, o.confidence, o.reasons, o.height, o.depth,
-                             o.hillshade, o.disparity_picture, o.hillshade_picture}) {
-        if (!path.empty()) {
-            json[path.filename().string()] = {{"bytes", std::filesystem::file_size(path)},
-                                              {"sha256", ledger::sha256_of_file(path)}};
-        }
+    for (const auto& path : o.files()) {
+        json[path.filename().string()] = {{"bytes", std::filesystem::file_size(path)},
+                                          {"sha256", ledger::sha256_of_file(path)}};
     }
     return json;
 }
@@ -195,7 +193,13 @@ ordered_json run_record(const PlannedJob& planned, const RunLayout& layout,
     ordered_json record;
     record["program"] = "hsgm " HSGM_VERSION;
     record["defines"] = fingerprint;
+    if (planned.job.satellite) {
+        record["geometry"] = geometry_json(*planned.job.satellite->pair);
+    }
     record["result"] = summary_json(summary);
+    if (summary.dsm) {
+        record["dsm"] = dsm_json(*summary.dsm);
+    }
     record["seams"] = seams;
     record["tiles"] = tiles_json(books);
     record["stages"] = stages_json(books);

@@ -85,8 +85,12 @@ TEST_CASE("what a configuration must say is asked for by key")
     place.refused_config(kPair + kGeometry + kMatcher,
                          {"'output.folder' is missing", "a path"});
     place.refused_config(kPair + kGeometry + kOutput, {"'matcher.disparity' must be given"});
+    place.refused_config(
+        kPair + kOutput + kMatcher + "geometry: {kind: ortho}\n",
+        {"bad.yaml:4:18", "'geometry.kind'", "rectified", "rpc", "not 'ortho'"});
     place.refused_config(kPair + kOutput + kMatcher + "geometry: {kind: rpc}\n",
-                         {"bad.yaml:4:18", "'geometry.kind'", "rectified", "not 'rpc'"});
+                         {"bad.yaml:3:22", "'matcher.disparity' is found by the program",
+                          "leave it out", "geometry.heights_m"});
 }
 
 TEST_CASE("what does not go together is refused by key")

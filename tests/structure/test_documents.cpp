@@ -130,7 +130,7 @@ TEST_CASE("configs/defaults.yaml says what the program takes where nothing is sa
 TEST_CASE("configs/defaults.yaml lists every key that the program knows")
 {
     const std::string section =
-        GENERATE("", "pair", "pair.left", "geometry", "matcher", "run", "output");
+        GENERATE("", "pair", "pair.left", "geometry", "dsm", "matcher", "run", "output");
     CAPTURE(section);
     CHECK(known_beside(section) == listed_in(section));
 }

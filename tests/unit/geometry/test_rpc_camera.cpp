@@ -130,6 +130,17 @@ TEST_CASE("a part of an image has the model of the whole, moved")
     CHECK(part.project(ground).y == Approx(camera.project(ground).y - 345.5));
 }
 
+TEST_CASE("a reduced image has the model of the whole, reduced")
+{
+    const RpcModel whole = samples::model();
+    const GeodeticPoint ground{7.01, 45.02, 640};
+    const ImagePoint fine = RpcCamera(whole).project(ground);
+    const ImagePoint coarse = RpcCamera(reduced(whole, 4)).project(ground);
+    // Coarse pixel 0 holds the pixels 0 to 3, from -0.5 to 3.5.
+    CHECK((coarse.x + 0.5) * 4 == Approx(fine.x + 0.5));
+    CHECK((coarse.y + 0.5) * 4 == Approx(fine.y + 0.5));
+}
+
 TEST_CASE("a model with negative scales is an image turned by 180 degrees")
 {
     const RpcModel upright = samples::model();

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "pipeline/stages/geometry_search.h"
+
+#include <memory>
+#include <string>
+
+namespace hsgm::pipeline {
+
+/// How a raw pair with RPCs becomes a DSM.
+struct SatelliteOptions {
+    PairGeometryOptions search;
+    double dsm_gsd_m = 0; ///< side of a cell of the DSM; 0: a round number near the images'
+    std::string stored;   ///< a geometry that an earlier run found; empty: it is to be found
+    /// What planning found; every stage reads it and none changes it.
+    std::shared_ptr<const geometry::PairGeometry> pair;
+};
+
+} // namespace hsgm::pipeline

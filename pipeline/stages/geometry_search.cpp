@@ -1,0 +1,369 @@
+#include "pipeline/stages/geometry_search.h"
+
+#include "io/error.h"
+#include "pipeline/geometry/disparity_bounds.h"
+#include "pipeline/geometry/error.h"
+#include "pipeline/geometry/tie_points.h"
+#include "pipeline/stages/quick_match.h"
+#include "pipeline/stages/resampled_source.h"
+#include "pipeline/stages/sensor_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+using geometry::DisparityBounds;
+using geometry::EpipolarFrame;
+using geometry::FrameOptions;
+using geometry::FramePatch;
+using geometry::HeightSpan;
+using geometry::MapProjection;
+using geometry::PairGeometry;
+using geometry::Pointing;
+using geometry::PointingModel;
+using geometry::ReferenceSurface;
+using geometry::RpcCamera;
+using geometry::RpcGroundCamera;
+using geometry::TieGate;
+using geometry::TiePoint;
+using tiling::Image;
+using tiling::Rect;
+using tiling::Size;
+
+/// Features are sought in images of at most about that size.
+constexpr int kFeaturePx = 1024;
+constexpr int kCoarseFeatures = 4000;
+/// Patches at full resolution from which the pointing is found.
+constexpr int kPatchPx = 512;
+constexpr int kPatchesAcross = 4;
+constexpr int kPatchFeatures = 2000;
+/// How much wider than the tie points the reduced images are searched, at least.
+constexpr double kSearchDownM = 50;
+constexpr double kSearchUpM = 100;
+constexpr int kSearches = 4;
+/// Wrong matches that pass the left-right check rarely have more; right ones mostly do.
+constexpr int kLeastConfidence = 160;
+
+/// Step of the frame that is matched, of the images' ground sampling distance: a finer grid
+/// than theirs makes the errors of fractions of a pixel smaller on the ground
+/// (docs/geometry.md has the measurements).
+constexpr double kFrameStep = 0.75;
+
+/// A frame with both images drawn into it.
+struct DrawnPair {
+    EpipolarFrame frame;
+    Image<double> left;
+    Image<double> right;
+};
+
+class Search {
+public:
+    Search(const SensorImage& left, const SensorImage& right,
+           const PairGeometryOptions& options)
+        : left_(left), right_(right), options_(options), map_(find_map())
+    {
+    }
+
+    PairGeometry run();
+
+private:
+    MapProjection find_map() const;
+    HeightSpan possible_heights() const;
+    geometry::Polygon region() const;
+    FrameOptions frame_options(double level_m, HeightSpan heights, double gsd_m) const;
+    EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer) const;
+    DrawnPair draw_reduced(double level_m, HeightSpan heights, int coarser = 1) const;
+    void find_rough_pointing();
+    void find_heights();
+    HeightSpan widened(HeightSpan heights) const;
+    int feature_reduction() const;
+    void find_pointing();
+    std::vector<TiePoint> patch_points(const EpipolarFrame& frame) const;
+    PairGeometry finish();
+
+    SensorView left_;
+    SensorView right_;
+    const PairGeometryOptions& options_;
+    MapProjection map_;
+    int reduction_ = 1;
+    double level_m_ = 0;
+    HeightSpan heights_;     // as far as they are known
+    HeightSpan tie_heights_; // of the bulk of the rough tie points
+    Pointing rough_;
+    std::optional<Pointing> pointing_;
+    std::vector<std::string> warnings_;
+};
+
+HeightSpan Search::possible_heights() const
+{
+    return options_.heights
+               ? *options_.heights
+               : geometry::heights_of(left_.camera().model(), right_.camera().model());
+}
+
+MapProjection Search::find_map() const
+{
+    const HeightSpan heights = possible_heights();
+    const auto middle =
+        left_.camera().locate({left_.size().cols / 2.0, left_.size().rows / 2.0},
+                              (heights.low_m + heights.high_m) / 2);
+    if (!middle) {
+        throw geometry::GeometryError(
+            "the middle of the left image meets no ground: the RPC is that of another image");
+    }
+    return MapProjection::automatic(middle->longitude_deg, middle->latitude_deg);
+}
+
+geometry::Polygon Search::region() const
+{
+    geometry::Polygon region;
+    for (const geometry::MapPoint& corner : options_.region_deg) {
+        region.push_back(map_.forward({corner.x, corner.y, level_m_}));
+    }
+    return region;
+}
+
+FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gsd_m) const
+{
+    FrameOptions options;
+    options.gsd_m = gsd_m;
+    options.below_m = std::min(heights.low_m - level_m, -1.0);
+    options.above_m = std::max(heights.high_m - level_m, 1.0);
+    options.region = region();
+    return options;
+}
+
+EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer) const
+{
+    FrameOptions how = frame_options(level_m, heights, options_.gsd_m);
+    how.finer = finer;
+    return geometry::make_epipolar_frame(RpcGroundCamera(left_.camera(), map_), left_.size(),
+                                         RpcGroundCamera(right_.camera(), map_), right_.size(),
+                                         ReferenceSurface(level_m), how);
+}
+
+/// The reduced images in a frame of their own, or one with pixels `coarser` times as wide.
+DrawnPair Search::draw_reduced(double level_m, HeightSpan heights, int coarser) const
+{
+    const RpcGroundCamera left(left_.reduced_camera(), map_);
+    const RpcGroundCamera right(right_.reduced_camera(), map_);
+    const auto frame = [&](double gsd_m) {
+        return geometry::make_epipolar_frame(left, left_.reduced().size(), right,
+                                             right_.reduced().size(), ReferenceSurface(level_m),
+                                             frame_options(level_m, heights, gsd_m));
+    };
+    DrawnPair pair;
+    pair.frame = frame(options_.gsd_m * reduction_);
+    if (coarser > 1) {
+        pair.frame = frame(pair.frame.gsd_m * coarser);
+    }
+    pair.left = draw(left_.reduced(), pair.frame.left, pair.frame.size);
+    pair.right = draw(right_.reduced(), pair.frame.right, pair.frame.size);
+    return pair;
+}
+
+/// Pixels of the images to one of those in which rough tie points are sought.
+int Search::feature_reduction() const
+{
+    const Size left = left_.reduced().size();
+    const Size right = right_.reduced().size();
+    const int side = std::max({left.rows, left.cols, right.rows, right.cols});
+    return reduction_ * tiling::ceil_div(side, kFeaturePx);
+}
+
+/// Features of the reduced images, over all heights at which they overlap.
+void Search::find_rough_pointing()
+{
+    const int coarser = feature_reduction() / reduction_;
+    const DrawnPair pair = draw_reduced(level_m_, heights_, coarser);
+    const TieGate gate{(heights_.low_m - level_m_) * pair.frame.px_per_m - 2,
+                       (heights_.high_m - level_m_) * pair.frame.px_per_m + 2, 0,
+                       options_.largest_pointing_px / feature_reduction() + 1};
+    const auto points =
+        geometry::match_features({0, 0, pair.left}, {0, 0, pair.right}, gate, kCoarseFeatures);
+    std::vector<bool> agrees;
+    const Pointing rough = geometry::estimate_pointing(
+        pair.frame, points, right_.reduced().size(), PointingModel::shift, &agrees);
+    std::vector<TiePoint> agreeing;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (agrees[i]) {
+            agreeing.push_back(points[i]);
+        }
+    }
+    if (options_.pointing) {
+        geometry::ImageCorrection correction = rough.correction;
+        correction.x_px *= reduction_;
+        correction.y_px *= reduction_;
+        right_.correct(correction);
+        rough_ = rough;
+        rough_.shift_px *= reduction_;
+        rough_.correction = correction;
+    }
+    const auto bounds = geometry::bounds_of(agreeing);
+    tie_heights_ = {level_m_ + bounds->min_px / pair.frame.px_per_m,
+                    level_m_ + bounds->max_px / pair.frame.px_per_m};
+}
+
+HeightSpan Search::widened(HeightSpan span) const
+{
+    const double rise = span.high_m - span.low_m;
+    const HeightSpan possible = heights_;
+    return {std::max(span.low_m - std::max(kSearchDownM, rise / 2), possible.low_m),
+            std::min(span.high_m + std::max(kSearchUpM, rise), possible.high_m)};
+}
+
+/// The reduced images, matched; wider where the search ends in the middle of something.
+void Search::find_heights()
+{
+    HeightSpan search = widened(tie_heights_);
+    for (int i = 0; i < kSearches; ++i) {
+        const double level_m = (search.low_m + search.high_m) / 2;
+        const DrawnPair pair = draw_reduced(level_m, search);
+        const auto reach = static_cast<int>(
+            std::ceil((search.high_m - search.low_m) / 2 * pair.frame.px_per_m));
+        const Image<float> map =
+            quick_match(pair.left, pair.right, {-reach, reach}, kLeastConfidence);
+        const auto found = geometry::bounds_of(map.view());
+        if (!found) {
+            warnings_.emplace_back("the reduced images could not be matched; the range of "
+                                   "heights comes from tie points alone");
+            heights_ = widened(tie_heights_);
+            return;
+        }
+        // What the reduced images are too coarse for: a tower of two of their pixels.
+        const double step_m = 1 / (pair.frame.px_per_m * reduction_);
+        const HeightSpan seen{level_m + found->min_px / pair.frame.px_per_m,
+                              level_m + found->max_px / pair.frame.px_per_m};
+        const bool ends = found->max_px > reach - 2 || found->min_px < -reach + 2;
+        heights_ = {seen.low_m - (4 + 2 * reduction_) * step_m,
+                    seen.high_m + (4 + 3 * reduction_) * step_m};
+        if (!ends) {
+            return;
+        }
+        search = {search.low_m - (search.high_m - search.low_m) / 2,
+                  search.high_m + (search.high_m - search.low_m) / 2};
+    }
+    warnings_.push_back(fmt::format("the range of heights is very wide, {:.0f} to {:.0f} m: "
+                                    "clouds, or heights should be given",
+                                    heights_.low_m, heights_.high_m));
+}
+
+/// Features of patches at full resolution, evenly spread over the frame.
+std::vector<TiePoint> Search::patch_points(const EpipolarFrame& frame) const
+{
+    ResampledSource left(io::RasterSource(left_.sensor().image), frame.left, frame.size);
+    ResampledSource right(io::RasterSource(right_.sensor().image), frame.right, frame.size);
+    const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
+                       1.5 * feature_reduction() + 1};
+    const auto patches_of = [](int extent) {
+        return std::clamp((extent + kPatchPx / 2) / kPatchPx, 1, kPatchesAcross);
+    };
+    const int down = patches_of(frame.size.rows);
+    const int across = patches_of(frame.size.cols);
+    std::vector<TiePoint> points;
+    for (int i = 0; i < down * across; ++i) {
+        const int row = (2 * (i / across) + 1) * frame.size.rows / (2 * down) - kPatchPx / 2;
+        const int col = (2 * (i % across) + 1) * frame.size.cols / (2 * across) - kPatchPx / 2;
+        const Rect here = intersect({row, col, kPatchPx, kPatchPx}, rect_of(frame.size));
+        const Rect there = intersect(
+            expand(right_reach(here, {static_cast<int>(std::floor(gate.disparity_min_px)),
+                                      static_cast<int>(std::ceil(gate.disparity_max_px))}),
+                   static_cast<int>(gate.row_tolerance_px) + 16),
+            rect_of(frame.size));
+        Image<double> a(here.size());
+        Image<double> b(there.size());
+        left.read(here, a);
+        right.read(there, b);
+        const auto found =
+            geometry::match_features({here.row, here.col, a.view()},
+                                     {there.row, there.col, b.view()}, gate, kPatchFeatures);
+        points.insert(points.end(), found.begin(), found.end());
+    }
+    return points;
+}
+
+void Search::find_pointing()
+{
+    const EpipolarFrame frame = frame_at(level_m_, heights_, 1);
+    const auto points = patch_points(frame);
+    pointing_ =
+        geometry::estimate_pointing(frame, points, right_.size(), *options_.pointing, nullptr);
+    right_.correct(pointing_->correction);
+    *pointing_ = geometry::joined(rough_, *pointing_);
+    for (const std::string& warning : pointing_->warnings) {
+        warnings_.push_back("pointing: " + warning);
+    }
+}
+
+PairGeometry Search::finish()
+{
+    const RpcGroundCamera left(left_.camera(), map_);
+    const RpcGroundCamera right(right_.camera(), map_);
+    EpipolarFrame frame = frame_at(level_m_, heights_, kFrameStep);
+    const tiling::DisparityRange disparity{
+        static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
+        static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
+    const MapProjection output =
+        options_.crs.empty() ? MapProjection::from_text(map_.text(), options_.vertical)
+                             : MapProjection::from_text(options_.crs, options_.vertical);
+    geometry::GroundLattice ground(
+        frame, left, right, disparity.min, disparity.max,
+        [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); });
+    return {left_.camera(),
+            right_.camera(),
+            map_.text(),
+            output.text(),
+            ReferenceSurface(level_m_),
+            std::move(frame),
+            std::move(ground),
+            disparity,
+            heights_,
+            pointing_,
+            warnings_};
+}
+
+PairGeometry Search::run()
+{
+    const geometry::Overlap overlap = geometry::find_overlap(
+        RpcGroundCamera(left_.camera(), map_), left_.size(),
+        RpcGroundCamera(right_.camera(), map_), right_.size(), possible_heights());
+    level_m_ = overlap.level_m;
+    heights_ = options_.heights ? *options_.heights : overlap.shared;
+    if (!options_.heights || options_.pointing) {
+        reduction_ = std::max(reduction_of(left_.size()), reduction_of(right_.size()));
+        left_.reduce(reduction_);
+        right_.reduce(reduction_);
+        find_rough_pointing();
+    }
+    if (!options_.heights) {
+        find_heights();
+    }
+    level_m_ = std::round((heights_.low_m + heights_.high_m) / 2);
+    if (options_.pointing) {
+        find_pointing();
+    }
+    return finish();
+}
+
+} // namespace
+
+geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
+                                          const PairGeometryOptions& options)
+{
+    try {
+        return Search(left, right, options).run();
+    } catch (const geometry::GeometryError& error) {
+        throw io::InputError(
+            fmt::format("{} and {}: {}", left.image.path, right.image.path, error.what()));
+    } catch (const std::invalid_argument& error) {
+        throw io::ConfigError(error.what());
+    }
+}
+
+} // namespace hsgm::pipeline

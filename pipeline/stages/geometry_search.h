@@ -1,0 +1,47 @@
+#pragma once
+
+#include "io/image_spec.h"
+#include "pipeline/geometry/footprint.h"
+#include "pipeline/geometry/overlap.h"
+#include "pipeline/geometry/pair_geometry.h"
+#include "pipeline/geometry/pointing.h"
+#include "pipeline/geometry/rpc_camera.h"
+
+#include <optional>
+#include <string>
+
+namespace hsgm::pipeline {
+
+/// A raw image with its model.
+struct SensorImage {
+    io::ImageSpec image; ///< with the model's file, where it is not the image's own
+    /// What is known to be added to the model's image points, from an earlier run.
+    geometry::ImageCorrection correction;
+};
+
+/// What a pair's geometry is found with. Heights are above the WGS84 ellipsoid.
+struct PairGeometryOptions {
+    /// Lowest and highest ground; absent: found from the images.
+    std::optional<geometry::HeightSpan> heights;
+    /// How the right image's pointing is mended; absent: it is taken as it is.
+    std::optional<geometry::PointingModel> pointing = geometry::PointingModel::automatic;
+    double largest_pointing_px = 50; ///< how far off it may be
+    double gsd_m = 0;                ///< of the frame; 0: three quarters of the images'
+    geometry::Polygon region_deg;    ///< convex: x longitude, y latitude; empty: everything
+    std::string crs;                 ///< of the ground points; empty: the UTM zone
+    std::string vertical;            ///< datum of their heights; empty: the ellipsoid
+};
+
+/// Finds a pair's geometry from its images:
+///
+///     models, overlap -> reduced images, coarse frame -> features -> rough pointing, heights
+///        -> reduced images matched -> range of heights -> frame -> features of patches at
+///        full resolution -> pointing -> final frame, range and ground lattice
+///
+/// Reads each image through once and patches of it again; memory does not grow with them.
+/// Throws InputError in a sentence that names the images where they make no pair, and
+/// ConfigError for a map that cannot be used.
+geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
+                                          const PairGeometryOptions& options);
+
+} // namespace hsgm::pipeline

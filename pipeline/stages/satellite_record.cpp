@@ -1,0 +1,58 @@
+#include "pipeline/stages/satellite_record.h"
+
+#include "pipeline/geometry/map_projection.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace hsgm::pipeline {
+
+std::string describe_geometry(const geometry::PairGeometry& pair)
+{
+    std::string pointing = "pointing as given";
+    if (pair.pointing) {
+        const geometry::Pointing& p = *pair.pointing;
+        pointing =
+            fmt::format("pointing mended by {:.2f} px{} from {} of {} tie points ({:.2f} "
+                        "-> {:.2f} px rms)",
+                        p.shift_px, p.affine ? " and a slope" : "", p.inliers, p.points,
+                        p.rms_before_px, p.rms_after_px);
+    }
+    return fmt::format(
+        "{}; heights {:.0f} to {:.0f} m above the ellipsoid; frame of {} x {} px "
+        "of {:.3f} m, {:.2f} px per metre of height",
+        pointing, pair.heights.low_m, pair.heights.high_m, pair.frame.size.cols,
+        pair.frame.size.rows, pair.frame.gsd_m, pair.frame.px_per_m);
+}
+
+nlohmann::ordered_json geometry_json(const geometry::PairGeometry& pair)
+{
+    nlohmann::ordered_json json{
+        {"heights_m", {pair.heights.low_m, pair.heights.high_m}},
+        {"disparity_px", {pair.disparity.min, pair.disparity.max}},
+        {"frame",
+         {{"rows", pair.frame.size.rows},
+          {"cols", pair.frame.size.cols},
+          {"gsd_m", pair.frame.gsd_m},
+          {"images_gsd_m", pair.frame.images_gsd_m},
+          {"px_per_m", pair.frame.px_per_m}}},
+        {"map", geometry::MapProjection::from_text(pair.output_map).name()},
+        {"warnings", pair.warnings}};
+    if (pair.pointing) {
+        const geometry::Pointing& p = *pair.pointing;
+        json["pointing"] = {
+            {"shift_px", p.shift_px},           {"affine", p.affine},
+            {"tie_points", p.points},           {"inliers", p.inliers},
+            {"rms_before_px", p.rms_before_px}, {"rms_after_px", p.rms_after_px}};
+    }
+    return json;
+}
+
+nlohmann::ordered_json dsm_json(const DsmSummary& dsm)
+{
+    return {{"rows", dsm.grid.size.rows}, {"cols", dsm.grid.size.cols},
+            {"cell", dsm.grid.cell},      {"west", dsm.grid.west()},
+            {"north", dsm.grid.north()},  {"cells_with_value", dsm.cells_with_value}};
+}
+
+} // namespace hsgm::pipeline

@@ -1,0 +1,80 @@
+#include "pipeline/stages/satellite_stage.h"
+
+#include "pipeline/dsm/dsm_grid.h"
+#include "pipeline/geometry/map_projection.h"
+#include "pipeline/geometry/pair_geometry.h"
+#include "pipeline/stages/stored_geometry.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace hsgm::pipeline {
+
+namespace {
+
+using geometry::MapProjection;
+using geometry::PairGeometry;
+
+/// Of a degree of latitude: what a cell given in metres is in a map of degrees.
+constexpr double kMetresPerDegree = 111319.49;
+
+double cell_m(const Job& job)
+{
+    const double asked = job.satellite->dsm_gsd_m;
+    return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.images_gsd_m);
+}
+
+DsmOptions dsm_options(const Job& job, const MapProjection& map)
+{
+    DsmOptions options;
+    options.cell_m = cell_m(job);
+    options.map_wkt = map.wkt();
+    options.map_units_per_m = map.in_metres() ? 1 : 1 / kMetresPerDegree;
+    options.metadata = provenance(job);
+    options.metadata["HSGM_MAP"] = map.name();
+    options.metadata["HSGM_HEIGHTS"] = map.height_name();
+    options.creation_options = job.outputs.creation_options;
+    return options;
+}
+
+} // namespace
+
+void plan_satellite(Job& job)
+{
+    const std::string& stored = job.satellite->stored;
+    job.satellite->pair = std::make_shared<PairGeometry>(
+        stored.empty()
+            ? find_pair_geometry({job.left, {}}, {job.right, {}}, job.satellite->search)
+            : read_geometry(stored, job));
+    job.disparity = job.satellite->pair->disparity;
+}
+
+DsmSummary write_satellite_heights(const Job& job)
+{
+    const PairGeometry& pair = *job.satellite->pair;
+    const MapProjection map = MapProjection::from_text(pair.output_map);
+    const OutputPaths& o = job.outputs;
+    return write_dsm(
+        {o.disparity, o.confidence, &pair.ground, pair.frame.gsd_m}, dsm_options(job, map),
+        {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
+}
+
+std::int64_t satellite_bytes(const Job& job, int threads)
+{
+    return dsm_bytes(job.satellite->pair->frame.gsd_m, cell_m(job), threads);
+}
+
+std::int64_t satellite_output_bytes(const Job& job)
+{
+    const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
+    constexpr double kCellBytes = 4 + 4 + 1 + 1 + 1;
+    // The DSM of a frame that lies aslant on the map is at most twice as large; and the
+    // cloud-optimized one is made beside the plain one, with overviews.
+    const double cells =
+        static_cast<double>(frame.size.area()) * 2 * std::pow(frame.gsd_m / cell_m(job), 2);
+    return frame.size.area() * 8 +
+           static_cast<std::int64_t>(cells * (kCellBytes + 4 * 4.0 / 3));
+}
+
+} // namespace hsgm::pipeline
