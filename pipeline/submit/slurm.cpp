@@ -36,9 +36,14 @@ std::string quoted(const std::string& word)
     }
     std::string text = "'";
     for (const char c : word) {
-        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        if (c == '\'') {
+            text += "'\\''";
+        } else {
+            text += c;
+        }
     }
-    return text + "'";
+    text += '\'';
+    return text;
 }
 
 std::string path_of_script(const SlurmChain& chain, RunStage stage)
@@ -46,19 +51,27 @@ std::string path_of_script(const SlurmChain& chain, RunStage stage)
     return chain.results + "/slurm/" + name_of(stage) + ".sbatch";
 }
 
-const char* meaning_of(RunStage stage)
+constexpr const char* kCoarse = R"(# First: prepares the pair for all shards.
+)";
+
+constexpr const char* kTiles = R"(# Then: each task of the array matches its share of the tiles.
+# A task that Slurm starts again goes on where its earlier self stopped.
+)";
+
+constexpr const char* kAssemble =
+    R"(# Last, when the array has ended, however that was: writes the results.
+# Exit code 5: some tiles failed, and the results say where.
+)";
+
+const char* body_of(RunStage stage)
 {
     switch (stage) {
     case RunStage::coarse:
-        return "# First: prepares the pair for all shards.\n";
+        return kCoarse;
     case RunStage::tiles:
-        return "# Then: each task of the array matches its share of the tiles. A task that "
-               "Slurm\n"
-               "# starts again goes on where its earlier self stopped.\n";
+        return kTiles;
     default:
-        return "# Last, when all tasks of the array have ended: writes the results. Exit code "
-               "5:\n"
-               "# some tiles failed, and the results say where.\n";
+        return kAssemble;
     }
 }
 
@@ -122,7 +135,7 @@ std::string slurm_script(const SlurmChain& chain, RunStage stage)
     for (const std::string& more : chain.directives) {
         directive(more);
     }
-    text += meaning_of(stage);
+    text += body_of(stage);
     std::vector<std::string> words{chain.program, "run",     chain.config,  "-o",
                                    chain.results, "--stage", name_of(stage)};
     if (tiles) {
@@ -133,7 +146,8 @@ std::string slurm_script(const SlurmChain& chain, RunStage stage)
     words.insert(words.end(), chain.words.begin(), chain.words.end());
     text += "exec";
     for (const std::string& word : words) {
-        text += " " + quoted(word);
+        text += ' ';
+        text += quoted(word);
     }
     return text + "\n";
 }
