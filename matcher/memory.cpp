@@ -1,9 +1,10 @@
-#include "matcher/matcher.h"
+#include "matcher/memory.h"
 
 #include "matcher/host/level_features.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace hsgm::matcher {
 
@@ -51,6 +52,37 @@ std::int64_t worker_bytes(const Options& options, int count)
            rows * side * (stride + 16) * path_bytes(options) + (1 << 16);
 }
 
+// A tile in the middle of the image that starts just before a window's border has the largest
+// support.
+Rect worst_tile(const LevelPlan& plan, int window, int tile_size_px)
+{
+    const tiling::Size full = plan.left_sizes.front();
+    const int rows = tile_size_px == 0 ? full.rows : std::min(tile_size_px, full.rows);
+    const int cols = tile_size_px == 0 ? full.cols : std::min(tile_size_px, full.cols);
+    const auto off_grid = [window](int whole, int part) {
+        return part == whole
+                   ? 0
+                   : std::min((whole - part) / 2 / window * window + window - 1, whole - part);
+    };
+    return {off_grid(full.rows, rows), off_grid(full.cols, cols), rows, cols};
+}
+
+std::int64_t image_bytes(const std::vector<LevelSupport>& levels)
+{
+    std::int64_t bytes = 0;
+    for (const LevelSupport& s : levels) {
+        bytes += 2 * (s.left_image.area() + s.right_image.area());
+    }
+    return bytes;
+}
+
+std::int64_t result_bytes(const Rect& core, const LevelPlan& plan)
+{
+    const Rect seen =
+        intersect(right_reach(core, plan.ranges.front()), rect_of(plan.right_sizes.front()));
+    return core.area() * kFirstPassBytes + seen.area() * kKeyBytes;
+}
+
 } // namespace
 
 std::int64_t Matcher::coarse_bytes() const
@@ -73,41 +105,43 @@ std::int64_t Matcher::coarse_bytes() const
     return cells * (1 + 2) + path_rows + feature_bytes(whole, options_.cost) + outputs;
 }
 
+std::int64_t coarse_kept_bytes(const Matcher& matcher)
+{
+    const LevelPlan& plan = matcher.plan();
+    if (!plan.coarsest_whole || plan.levels() == 1) {
+        return matcher.coarse_bytes(); // where it is the result itself, all of it stays
+    }
+    const tiling::Size size = plan.left_sizes.back();
+    return kept_bytes(rect_of(size), plan.ranges.back().count(), matcher.options()) +
+           size.area(); // the tone
+}
+
 std::int64_t Matcher::tile_bytes(int tile_size_px, int threads) const
 {
-    const tiling::Size full = plan_.left_sizes.front();
-    const int rows = tile_size_px == 0 ? full.rows : std::min(tile_size_px, full.rows);
-    const int cols = tile_size_px == 0 ? full.cols : std::min(tile_size_px, full.cols);
-    // A tile in the middle of the image that starts just before a window's border has the
-    // largest support.
-    const int window = options_.window_px;
-    const auto off_grid = [window](int whole, int part) {
-        return part == whole
-                   ? 0
-                   : std::min((whole - part) / 2 / window * window + window - 1, whole - part);
-    };
-    const Rect core{off_grid(full.rows, rows), off_grid(full.cols, cols), rows, cols};
+    const Rect core = worst_tile(plan_, options_.window_px, tile_size_px);
     const auto levels = support(core);
-    std::int64_t images = 0;
     std::int64_t most = 0;
     std::int64_t coarser_kept = 0;
     for (int level = plan_.windowed_levels() - 1; level >= 0; --level) {
         const auto k = static_cast<std::size_t>(level);
         const LevelSupport& s = levels[k];
-        images += 2 * (s.left_image.area() + s.right_image.area());
         const std::int64_t kept =
             level > 0 ? kept_bytes(s.windows, plan_.ranges[k].count(), options_) : 0;
         most = std::max(most, feature_bytes(s, options_.cost) + kept + coarser_kept);
         coarser_kept = kept;
     }
-    const Rect seen =
-        intersect(right_reach(core, plan_.ranges.front()), rect_of(plan_.right_sizes.front()));
-    const std::int64_t outputs = core.area() * kFirstPassBytes + seen.area() * kKeyBytes;
     const std::int64_t workers =
         plan_.windowed_levels() == 0
             ? 0
             : threads * worker_bytes(options_, plan_.ranges.front().count());
-    return images + most + outputs + workers;
+    return image_bytes(levels) + most + result_bytes(core, plan_) + workers;
+}
+
+std::int64_t waiting_tile_bytes(const Matcher& matcher, int tile_size_px)
+{
+    const LevelPlan& plan = matcher.plan();
+    const Rect core = worst_tile(plan, matcher.options().window_px, tile_size_px);
+    return std::max(image_bytes(matcher.support(core)), result_bytes(core, plan));
 }
 
 } // namespace hsgm::matcher

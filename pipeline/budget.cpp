@@ -1,6 +1,7 @@
 #include "pipeline/budget.h"
 
 #include "io/hillshade.h"
+#include "matcher/memory.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
@@ -21,8 +22,9 @@ namespace hsgm::pipeline {
 namespace {
 
 constexpr std::int64_t kMiB = std::int64_t{1} << 20;
-/// The program, its libraries, and what the allocator holds back.
-constexpr std::int64_t kBaseBytes = 96 * kMiB;
+/// The program and its libraries (51 MiB, measured), stacks, ledgers, and what the allocator
+/// holds back.
+constexpr std::int64_t kBaseBytes = 64 * kMiB;
 /// Two sources: a strip of doubles and of pixels each, and GDAL's decoded blocks.
 constexpr std::int64_t kStripBytes = 2 * (16 * kMiB + 4 * kMiB + 8 * kMiB);
 /// Larger tiles repeat less work at their borders, but gain little beyond this.
@@ -38,19 +40,6 @@ std::optional<std::uint64_t> read_number(const char* path)
     return std::nullopt;
 }
 
-std::int64_t kept_coarse_bytes(const matcher::Matcher& matcher)
-{
-    // Part of the peak while it is solved; a safe bound for what stays.
-    return matcher.coarse_bytes() / (matcher.plan().levels() == 1 ? 1 : 2);
-}
-
-std::int64_t stage_bytes(const matcher::Matcher& matcher, int tile, int threads, int in_flight,
-                         std::int64_t workers_share)
-{
-    const std::int64_t one = matcher.tile_bytes(tile, 0);
-    return kBaseBytes + kept_coarse_bytes(matcher) + in_flight * one + threads * workers_share;
-}
-
 // Fills in what a tile size takes.
 void set_tiles(Budget& budget, const matcher::Matcher& matcher, int tile)
 {
@@ -58,9 +47,14 @@ void set_tiles(Budget& budget, const matcher::Matcher& matcher, int tile)
     budget.tiles = tiling::TilePlan(matcher.pair().shape.left, tile).count();
     budget.workers = std::min(budget.tiles, std::min(budget.threads, 2));
     budget.tiles_in_flight = std::min(budget.tiles, budget.workers + 1);
-    const std::int64_t worker = matcher.tile_bytes(tile, 1) - matcher.tile_bytes(tile, 0);
+    // Every worker has a tile and they share the threads; the other tiles in flight wait for
+    // a worker, or for the writer.
+    const std::int64_t tile_bytes = matcher.tile_bytes(tile, 0);
+    const std::int64_t thread_bytes = matcher.tile_bytes(tile, 1) - tile_bytes;
     budget.tiles_bytes =
-        stage_bytes(matcher, tile, budget.threads, budget.tiles_in_flight, worker);
+        kBaseBytes + matcher::coarse_kept_bytes(matcher) + budget.workers * tile_bytes +
+        (budget.tiles_in_flight - budget.workers) * matcher::waiting_tile_bytes(matcher, tile) +
+        budget.threads * thread_bytes;
     budget.estimate_bytes = std::max(
         {budget.prepare_bytes, budget.coarse_bytes, budget.tiles_bytes, budget.refine_bytes});
 }

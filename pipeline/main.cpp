@@ -7,6 +7,7 @@
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
 #include "pipeline/commands/status_command.h"
+#include "pipeline/commands/submit_command.h"
 #include "pipeline/commands/synth_command.h"
 #include "pipeline/commands/usage.h"
 #include "pipeline/error.h"
@@ -111,6 +112,7 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_plan_command(app);
     hsgm::pipeline::add_batch_command(app);
     hsgm::pipeline::add_status_command(app);
+    hsgm::pipeline::add_submit_command(app);
     hsgm::pipeline::add_report_command(app);
     hsgm::pipeline::add_evaluate_command(app);
     hsgm::pipeline::add_synth_command(app);

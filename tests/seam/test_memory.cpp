@@ -88,8 +88,8 @@ ChildResult run_program(const pipeline::Job& job)
     return run_child(command);
 }
 
-// Peak memory of the run against the plan's estimate.
-void check_estimate(const pipeline::Job& job, const char* what)
+// Peak memory of the run against the plan's estimate, which it returns as a multiple of it.
+double check_estimate(const pipeline::Job& job, const char* what)
 {
     const auto budget = pipeline::plan_job(job).budget;
     const ChildResult result = run_program(job);
@@ -106,6 +106,7 @@ void check_estimate(const pipeline::Job& job, const char* what)
     INFO(what << ", tiles of " << budget.tile_size_px << " px, threads " << budget.threads);
     CHECK(result.exit_code == 0);
     CHECK(result.peak_bytes <= budget.estimate_bytes);
+    return static_cast<double>(budget.estimate_bytes) / static_cast<double>(result.peak_bytes);
 }
 
 } // namespace
@@ -134,6 +135,20 @@ TEST_CASE("a run takes no more memory than its plan says")
     check_estimate(job, "hsgm, 1024 disparities");
     job.run.tile_size_px = 0;
     check_estimate(job, "hsgm, 1024 disparities, untiled");
+}
+
+TEST_CASE("the plan of a large run is not far above what the run takes")
+{
+    const TemporaryFolder folder;
+    pipeline::Job job = write_large_pair({4000, 5000}, folder.path());
+    job.disparity = {-40, 87};
+    for (const int threads : {1, 2}) {
+        for (const std::int64_t memory : {std::int64_t{512} * kMiB, 4096 * kMiB}) {
+            job.run.threads = threads;
+            job.run.memory_bytes = memory;
+            CHECK(check_estimate(job, "hsgm, 128 disparities") < 1.4);
+        }
+    }
 }
 
 TEST_CASE("images several times larger than the memory allowed are matched within it")
