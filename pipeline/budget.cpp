@@ -80,6 +80,15 @@ std::string advice(const Budget& budget, matcher::Mode mode, bool tile_size_give
     return text;
 }
 
+// What comes after the second pass: the DSM of a raw pair, and shading.
+std::int64_t heights_bytes(const Job& job, const matcher::PairShape& shape, int threads)
+{
+    if (job.satellite) {
+        return satellite_bytes(job, threads);
+    }
+    return job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shape.left);
+}
+
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
     const int floats =
@@ -118,16 +127,9 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.prepare_bytes =
         kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
-    // A map may lie askew to the frame: as wide as its two sides together.
-    const tiling::Size shaded{shape.left.rows,
-                              shape.left.cols + (job.satellite ? shape.left.rows : 0)};
     budget.refine_bytes =
         kBaseBytes + std::max(refine_bytes(shape, job.matcher, budget.threads),
-                              job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shaded));
-    if (job.satellite) {
-        budget.refine_bytes =
-            std::max(budget.refine_bytes, kBaseBytes + satellite_bytes(job, budget.threads));
-    }
+                              heights_bytes(job, shape, budget.threads));
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
         budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);

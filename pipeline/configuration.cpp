@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "matcher/profile.h"
 #include "pipeline/budget.h"
+#include "pipeline/device_plan.h"
 #include "pipeline/error.h"
 #include "pipeline/satellite_configuration.h"
 
@@ -73,20 +74,19 @@ tiling::TileOrder read_order(ConfigSection& section)
     return order == "shuffled" ? tiling::TileOrder::shuffled : tiling::TileOrder::rows;
 }
 
-// The device must be one that this build has.
-void check_device(ConfigSection& section)
+// The device must be one that this build and this machine have.
+std::string read_device(ConfigSection& section)
 {
     const std::string device = section.text("device", "auto");
-    if (device == "auto" || device == "cpu") {
-        return;
+    DeviceChoice choice;
+    try {
+        choice = device_choice(device);
+    } catch (const std::invalid_argument& error) {
+        section.fail("device", fmt::format("is '{}'; {}", device, error.what()));
     }
-    if (device == "cuda" || device.starts_with("cuda:")) {
-        throw BudgetError(
-            fmt::format("{}: '{}' is '{}', but this build has no CUDA worker; use auto or cpu",
-                        section.place_of("device"), section.name_of("device"), device));
-    }
-    section.fail("device",
-                 fmt::format("is '{}'; it must be auto, cpu, cuda or cuda:N", device));
+    chosen_devices(choice, fmt::format("{}: '{}' is '{}'", section.place_of("device"),
+                                       section.name_of("device"), device));
+    return device;
 }
 
 RunOptions read_run(ConfigSection section)
@@ -100,7 +100,7 @@ RunOptions read_run(ConfigSection section)
     run.memory_bytes = memory.of(available_memory_bytes());
     run.tile_limit_s =
         section.number_or("tile_limit_s", "off", std::nullopt, 1e-3, 1e9).value_or(0);
-    check_device(section);
+    run.device = read_device(section);
     return run;
 }
 

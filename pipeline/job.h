@@ -21,6 +21,7 @@ struct RunOptions {
     tiling::TileOrder order = tiling::TileOrder::rows;
     int threads = 0;                           ///< 0: one for each processor
     std::optional<std::uint64_t> memory_bytes; ///< absent: 80 % of what the machine offers
+    std::string device = "auto";               ///< auto, cpu, cuda or cuda:N
     /// A tile that takes longer counts as failed; 0: no limit.
     double tile_limit_s = 0;
     /// So long after that a worker that does not come back is left behind.

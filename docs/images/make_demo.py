@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Makes docs/images/demo.png from the results of `./dev demo`: the same part of the left image,
-the disparity and the hillshade, side by side. Run it from the top of the project:
+"""Makes docs/images/demo.png from the results of `./dev demo`: the same place in the raw left
+image, in the shaded surface model and in its errors, side by side. Run it from the top of the
+project:
 
-    ./dev demo && python3 docs/images/make_demo.py
+    ./dev demo && /usr/bin/python3 docs/images/make_demo.py
 """
 
 import os
@@ -10,24 +11,46 @@ import os
 import numpy
 from osgeo import gdal
 
-ROW, COL, SIDE, GAP = 325, 372, 280, 5  # in the pictures of the demo, 1024 pixels wide
+SIDE, GAP = 320, 5
+IMAGE = (330, 330)  # column and row of the part in the left image
+WORST_M = 2.0  # full blue and full red
 
 gdal.UseExceptions()
 gdal.PushErrorHandler("CPLQuietErrorHandler")
 
 
-def rgb(path):
-    reduced = gdal.Translate("", path, format="MEM", width=1024, height=0,
-                             resampleAlg="average", outputType=gdal.GDT_Byte)
-    pixels = reduced.ReadAsArray()
-    pixels = pixels if pixels.ndim == 3 else numpy.stack([pixels] * 3)
-    return pixels // 8 * 8 + 4  # fewer colours, a smaller file
+def cut(path, col, row):
+    raster = gdal.Open("demo-out/" + path)
+    return raster.ReadAsArray(col, row, SIDE, SIDE).astype(float)
 
 
-panels = [rgb("demo-out/" + name)[:, ROW:ROW + SIDE, COL:COL + SIDE]
-          for name in ("scene/left.tif", "result/disparity.png", "result/hillshade.png")]
-gap = numpy.full((3, SIDE, GAP), 255, numpy.uint8)
+def grey(values, low, high):
+    scaled = numpy.clip((values - low) / (high - low), 0, 1) * 255
+    return numpy.stack([scaled] * 3)
+
+
+def errors(values):
+    off = numpy.clip(values / WORST_M, -1, 1)
+    red, blue = 1 + numpy.minimum(off, 0), 1 - numpy.maximum(off, 0)
+    colours = 255 * numpy.stack([red, 1 - numpy.abs(off), blue])
+    return numpy.where(numpy.isnan(values), 0, colours)
+
+
+def map_cell(truth, of):
+    """Column and row in another raster of the map, of the cell of the truth that shows at IMAGE."""
+    model = gdal.Transformer(gdal.Open("demo-out/scene/left.tif"), truth, ["METHOD=RPC", "RPC_HEIGHT=335"])
+    _, (col, row, _) = model.TransformPoint(0, *IMAGE)
+    t, o = truth.GetGeoTransform(), of.GetGeoTransform()
+    return (round((t[0] + col * t[1] - o[0]) / o[1]), round((t[3] + row * t[5] - o[3]) / o[5]))
+
+
+truth = gdal.Open("demo-out/scene/truth_dsm.tif")
+panels = [grey(cut("scene/left.tif", *IMAGE), 150, 1600),
+          grey(cut("result/hillshade.tif", *map_cell(truth, gdal.Open("demo-out/result/hillshade.tif"))), 0, 255),
+          errors(cut("result/error.tif", *map_cell(truth, gdal.Open("demo-out/result/error.tif"))))]
+gap = numpy.full((3, SIDE, GAP), 255)
 picture = numpy.concatenate([panels[0], gap, panels[1], gap, panels[2]], axis=2)
+picture = (picture // 8 * 8 + 4).clip(0, 255).astype(numpy.uint8)  # fewer colours, a smaller file
 memory = gdal.GetDriverByName("MEM").Create("", picture.shape[2], SIDE, 3)
 memory.WriteArray(picture)
 gdal.GetDriverByName("PNG").CreateCopy("docs/images/demo.png", memory, options=["ZLEVEL=9"])

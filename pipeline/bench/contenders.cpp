@@ -81,6 +81,29 @@ void add_variants(const BenchSettings& settings, List& list)
     }
 }
 
+// The base on a device, the same without pruning, and other costs.
+void add_device(const BenchSettings& settings, const matcher::cuda::DeviceInfo& device,
+                List& list)
+{
+    const int threads = settings.threads.front();
+    const auto add = [&](matcher::Cost cost, bool prune) {
+        Contender& c = list[list.add("", threads, 0)];
+        c.device = device;
+        c.options.cost = cost;
+        c.options.prune = prune;
+        c.title = title_of(c.options, std::nullopt) +
+                  ", cuda:" + std::to_string(device.number) + (prune ? "" : ", not pruned");
+    };
+    const bool prunes = list[0].options.resolved().prune;
+    add(settings.costs.front(), prunes);
+    if (prunes) {
+        add(settings.costs.front(), false);
+    }
+    for (std::size_t i = 1; i < settings.costs.size(); ++i) {
+        add(settings.costs[i], prunes);
+    }
+}
+
 } // namespace
 
 std::vector<Contender> contenders(const BenchSettings& settings)
@@ -88,6 +111,9 @@ std::vector<Contender> contenders(const BenchSettings& settings)
     List list(settings);
     list.add_base(settings.threads.front(), 0);
     add_variants(settings, list);
+    for (const auto& device : settings.devices) {
+        add_device(settings, device, list);
+    }
     list.add_peers(settings.threads.front(), 0);
     for (std::size_t i = 1; i < settings.threads.size(); ++i) {
         const std::size_t base = list.add_base(settings.threads[i], 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "matcher/cuda/device.h"
 #include "matcher/instructions.h"
 #include "matcher/options.h"
 #include "pipeline/bench/peer.h"
@@ -25,6 +26,7 @@ struct BenchSettings {
     std::vector<matcher::Cost> costs{matcher::Cost::census7x7};
     std::vector<matcher::Instructions> instructions; ///< empty: what the matcher chooses
     std::vector<int> threads{1};
+    std::vector<matcher::cuda::DeviceInfo> devices; ///< to measure beside the processor
     std::vector<Peer> peers;
     int tile_size_px = 0; ///< of matches in memory; 0: untiled
     int repeats = 3;
@@ -37,12 +39,14 @@ struct Contender {
     std::optional<Peer> peer; ///< nothing: hsgm itself, with the two below
     matcher::Options options;
     std::optional<matcher::Instructions> instructions;
+    std::optional<matcher::cuda::DeviceInfo> device; ///< that matches the tiles
     int threads = 1;
     std::size_t base = 0; ///< index of the contender that it is compared with; 0 for the first
 };
 
 /// The contenders of a benchmark, in the order of the report: the base, the same without
-/// pruning, with other instructions, with other costs; the peers; and for every further
+/// pruning, with other instructions, with other costs; on devices with every cost, and without
+/// pruning; the peers; and for every further
 /// number of threads the base, compared with that of the first number, and the peers,
 /// compared with hsgm on as many threads.
 std::vector<Contender> contenders(const BenchSettings& settings);

@@ -56,6 +56,11 @@ std::optional<std::string> obstacle(const Contender& c, const matcher::PairShape
             return why;
         }
     }
+    if (c.device) {
+        if (const auto why = why_not(shape, c.options, tile_size_px, *c.device)) {
+            return why;
+        }
+    }
     return shortage(bytes_of(c, shape, tile_size_px));
 }
 
@@ -109,8 +114,10 @@ public:
         if (c.peer) {
             on_threads(c.threads, [&] { peer_pair_->match(*c.peer, c.threads); });
         } else {
-            on_threads(c.threads,
-                       [&] { found_ = match_in_memory(pair_, c.options, tile_size_px_); });
+            on_threads(c.threads, [&] {
+                found_ = match_in_memory(pair_, c.options, tile_size_px_,
+                                         c.device ? &*c.device : nullptr);
+            });
         }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         return {time.count(), cpu_clock_s() - cpu_start_s};

@@ -5,7 +5,9 @@
 #include "tiling/pyramid.h"
 #include "tiling/tile_plan.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/concurrent_queue.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/partitioner.h>
@@ -124,16 +126,67 @@ void store(const matcher::TileMatch& tile, matcher::RefineInput& first)
     }
 }
 
+std::vector<Rect> cores_of(const tiling::TilePlan& plan)
+{
+    std::vector<Rect> cores;
+    for (int i = 0; i < plan.count(); ++i) {
+        cores.push_back(plan.core(i));
+    }
+    return cores;
+}
+
+// Streams of a device: one computes while the other copies.
+int streams_for(const tiling::TilePlan& plan)
+{
+    return std::min(plan.count(), 2);
+}
+
+// Who matches tiles: the processor, or the streams of a device, each one tile at a time.
+class TileWorker {
+public:
+    TileWorker(const Matcher& matcher, const matcher::CoarseSolution& coarse,
+               const tiling::TilePlan& plan, const matcher::cuda::DeviceInfo* device)
+        : matcher_(matcher), coarse_(coarse)
+    {
+        if (device == nullptr) {
+            return;
+        }
+        const auto on_device = matcher::cuda::upload_coarse(matcher, coarse, *device);
+        for (int i = 0; i < streams_for(plan); ++i) {
+            streams_.push_back(matcher::cuda::make_device_matcher(matcher, on_device, *device,
+                                                                  cores_of(plan)));
+            free_.push(streams_.back().get());
+        }
+    }
+
+    matcher::TileMatch match(const Rect& core, std::span<const LevelImages> images)
+    {
+        if (streams_.empty()) {
+            return matcher_.match_tile(core, images, coarse_);
+        }
+        matcher::cuda::DeviceMatcher* stream = nullptr;
+        free_.pop(stream);
+        matcher::TileMatch match = stream->match_tile(core, images);
+        free_.push(stream);
+        return match;
+    }
+
+private:
+    const Matcher& matcher_;
+    const matcher::CoarseSolution& coarse_;
+    std::vector<std::unique_ptr<matcher::cuda::DeviceMatcher>> streams_;
+    tbb::concurrent_bounded_queue<matcher::cuda::DeviceMatcher*> free_;
+};
+
 matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<LevelImages>& images,
-                                 const matcher::CoarseSolution& coarse, int tile_size_px,
+                                 const tiling::TilePlan& plan, TileWorker& worker,
                                  matcher::MatchStatistics& work)
 {
     const auto& shape = matcher.pair().shape;
-    const tiling::TilePlan plan(shape.left, tile_size_px);
     const auto read =
         std::span(images).first(static_cast<std::size_t>(matcher.plan().windowed_levels()));
     if (plan.count() == 1) {
-        matcher::TileMatch tile = matcher.match_tile(plan.core(0), read, coarse);
+        matcher::TileMatch tile = worker.match(plan.core(0), read);
         work += tile.work;
         return taken(std::move(tile));
     }
@@ -143,8 +196,7 @@ matcher::RefineInput match_tiles(const Matcher& matcher, const std::vector<Level
     tbb::parallel_for(
         tbb::blocked_range<int>(0, plan.count()),
         [&](const tbb::blocked_range<int>& one) {
-            const matcher::TileMatch tile =
-                matcher.match_tile(plan.core(one.begin()), read, coarse);
+            const matcher::TileMatch tile = worker.match(plan.core(one.begin()), read);
             const std::lock_guard lock(storing);
             work += tile.work;
             store(tile, first);
@@ -176,7 +228,7 @@ matcher::Refined second_pass(const Matcher& matcher, const matcher::RefineInput&
 } // namespace
 
 MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& options,
-                            int tile_size_px)
+                            int tile_size_px, const matcher::cuda::DeviceInfo* device)
 {
     MemoryMatch match;
     Lap lap;
@@ -200,14 +252,39 @@ MemoryMatch match_in_memory(const BenchPair& pair, const matcher::Options& optio
     const auto top = static_cast<std::size_t>(matcher.plan().levels() - 1);
     const auto coarse = matcher.solve_coarse(images[top].left.pixels, images[top].right.pixels);
     match.work = work_of(*coarse);
+    const tiling::TilePlan tiles(traits.shape.left, tile_size_px);
+    TileWorker worker(matcher, *coarse, tiles, device);
     match.seconds.coarse = lap.seconds();
-    auto first = match_tiles(matcher, images, *coarse, tile_size_px, match.work);
+    auto first = match_tiles(matcher, images, tiles, worker, match.work);
     match.seconds.windows = lap.seconds();
     first.left = std::move(images[0].left);
     first.right = std::move(images[0].right);
     match.result = second_pass(matcher, first);
     match.seconds.second = lap.seconds();
     return match;
+}
+
+std::optional<std::string> why_not(const matcher::PairShape& shape,
+                                   const matcher::Options& options, int tile_size_px,
+                                   const matcher::cuda::DeviceInfo& device)
+{
+    matcher::PairTraits traits;
+    traits.shape = shape;
+    traits.hmi = std::make_shared<matcher::HmiTable>();
+    const Matcher matcher(traits, options);
+    std::string why = refusal(matcher, device);
+    if (!why.empty()) {
+        return why;
+    }
+    const tiling::TilePlan plan(shape.left, tile_size_px);
+    const std::int64_t bytes =
+        matcher::cuda::shared_bytes(matcher) +
+        streams_for(plan) * worker_bytes(matcher, device, cores_of(plan));
+    if (bytes > device.free_bytes) {
+        return fmt::format("needs {} MiB of the device, which has {} MiB free", bytes >> 20,
+                           device.free_bytes >> 20);
+    }
+    return std::nullopt;
 }
 
 std::int64_t memory_match_bytes(const matcher::PairShape& shape,

@@ -35,6 +35,7 @@ ordered_json contender_json(const Contender& c)
         json["prune"] = o.prune;
         json["instructions"] =
             c.instructions ? ordered_json(name(*c.instructions)) : ordered_json("auto");
+        json["device"] = c.device ? "cuda:" + std::to_string(c.device->number) : "cpu";
     }
     json["threads"] = c.threads;
     return json;

@@ -76,6 +76,19 @@ void print_scaling(Text out, const PairResult& pair)
     }
 }
 
+// Of a match on a device, most is still the processor's work.
+void print_devices(Text out, const PairResult& pair)
+{
+    for (const Measured& m : pair.measured) {
+        if (m.contender.device) {
+            fmt::format_to(
+                out, "{}: {}, windows alone {:.3f} s, {:.0f} million nominal a second.\n",
+                m.contender.title, m.contender.device->name, m.stages.windows,
+                static_cast<double>(pair.nominal_cells()) / m.stages.windows / kMillion);
+        }
+    }
+}
+
 void print_whole(Text out, const FileMatch& whole)
 {
     fmt::format_to(out,
@@ -106,6 +119,7 @@ void print_pair(Text out, const PairResult& pair)
     }
     print_work(out, pair);
     print_scaling(out, pair);
+    print_devices(out, pair);
     if (pair.whole) {
         print_whole(out, *pair.whole);
     }

@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "pipeline/commands/range_argument.h"
 #include "pipeline/configuration.h"
+#include "pipeline/device_plan.h"
 #include "pipeline/error.h"
 
 #include <CLI/CLI.hpp>
@@ -28,17 +29,14 @@ auto parsed(const char* option, Parse parse)
     }
 }
 
-void check_device(const std::string& device)
+// `auto` measures the devices there are.
+std::vector<matcher::cuda::DeviceInfo> devices_of(const std::string& device)
 {
-    if (device == "cuda" || device.starts_with("cuda:")) {
-        throw BudgetError(
-            fmt::format("--device {}: this build measures no CUDA device; use auto "
-                        "or cpu",
-                        device));
-    }
-    if (device != "auto" && device != "cpu") {
-        throw io::ConfigError(
-            fmt::format("--device is '{}'; it must be auto, cpu, cuda or cuda:N", device));
+    const std::string what = fmt::format("--device is '{}'", device);
+    try {
+        return chosen_devices(device_choice(device), what).usable;
+    } catch (const std::invalid_argument& refused) {
+        throw io::ConfigError(fmt::format("{}; {}", what, refused.what()));
     }
 }
 
@@ -216,7 +214,10 @@ void add_contender_options(CLI::App& command, BenchArguments& a)
     command.add_option("--tile-size", a.tile_size_px, "side of a tile in px, 0 = untiled")
         ->check(CLI::Range(0, 1 << 20))
         ->capture_default_str();
-    command.add_option("--device", a.device, "auto or cpu")->capture_default_str();
+    command
+        .add_option("--device", a.device,
+                    "auto, cpu, cuda or cuda:N: measured beside the processor")
+        ->capture_default_str();
     command.add_option("--set", a.overrides, "override a key of matcher: --set matcher.p2=160")
         ->allow_extra_args(false)
         ->take_all();
@@ -239,8 +240,8 @@ void add_bench_options(CLI::App& command, BenchArguments& a)
 
 bench::BenchSettings bench_settings(const BenchArguments& a)
 {
-    check_device(a.device);
     BenchSettings s;
+    s.devices = devices_of(a.device);
     s.scene = a.scene;
     s.options = matcher_options(a.overrides);
     s.costs = costs_of(a, s.options.cost);

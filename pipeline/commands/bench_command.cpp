@@ -23,6 +23,7 @@ constexpr const char* kHelp = R"(Examples:
   hsgm bench --side 4096 --disparities 128 --cost census7x7 --peers hh,3way
   hsgm bench --side 2048 --disparities 128,256,512 --peers hh --threads 1
   hsgm bench --instructions avx2 --peers hh --set matcher.paths=4
+  hsgm bench --device cuda --cost census7x7 --peers none --tile-size 2048
   hsgm bench left.tif right.tif --disparity 0,127 --json > bench.json
   hsgm bench --whole --peers none                     the program from files to files, too
 

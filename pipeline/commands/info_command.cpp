@@ -1,6 +1,7 @@
 #include "pipeline/commands/info_command.h"
 
 #include "io/gdal_session.h"
+#include "matcher/cuda/device.h"
 #include "matcher/matcher.h"
 #include "pipeline/budget.h"
 
@@ -20,7 +21,15 @@ void print_info()
     fmt::print("memory    {} MiB, of which a run takes at most 80 % unless told otherwise\n",
                available_memory_bytes() >> 20);
     fmt::print("vectors   {}\n", matcher::vector_instructions());
-    fmt::print("devices   cpu (this build has no CUDA worker)\n");
+    const auto devices = matcher::cuda::find_devices();
+    fmt::print("devices   cpu{}\n", devices.usable.empty()
+                                        ? fmt::format(" (no CUDA device: {})", devices.why_none)
+                                        : "");
+    for (const auto& device : devices.usable) {
+        fmt::print("          cuda:{} {}, compute capability {}.{}, {} of {} MiB free\n",
+                   device.number, device.name, device.capability / 10, device.capability % 10,
+                   device.free_bytes >> 20, device.memory_bytes >> 20);
+    }
     fmt::print("modes     hsgm, hsgm-paper, sgm, local\n");
     fmt::print("costs     census5x5, census7x7, census9x7, pairs5x5, ternary5x5, census_ad,\n"
                "          pairs_bt, birchfield_tomasi, hmi\n");

@@ -31,7 +31,7 @@ void add_knobs(CLI::App& command, Knobs& knobs)
     command.add_option("--threads", knobs.threads, "threads to use (default: all processors)");
     command.add_option("--memory", knobs.memory,
                        "memory to stay under: 8GiB, 512MiB, 80% (default 80%)");
-    command.add_option("--device", knobs.device, "auto or cpu (default auto)");
+    command.add_option("--device", knobs.device, "auto, cpu, cuda or cuda:N (default auto)");
     // One value each, as written: the default would take brackets for CLI11's own lists.
     command.add_option("--set", knobs.overrides, "override any key: --set matcher.cost=hmi")
         ->allow_extra_args(false)

@@ -34,6 +34,21 @@ nlohmann::ordered_json levels_json(const matcher::LevelPlan& levels)
     return list;
 }
 
+nlohmann::ordered_json devices_json(const DevicePlan& plan)
+{
+    auto list = nlohmann::ordered_json::array();
+    if (plan.cpu) {
+        list.push_back({{"device", "cpu"}});
+    }
+    for (const PlannedDevice& device : plan.cuda) {
+        list.push_back({{"device", fmt::format("cuda:{}", device.info.number)},
+                        {"name", device.info.name},
+                        {"streams", device.streams},
+                        {"memory_bytes", device.bytes}});
+    }
+    return list;
+}
+
 nlohmann::ordered_json plan_json(const PlannedJob& planned)
 {
     const Budget& b = planned.budget;
@@ -45,6 +60,7 @@ nlohmann::ordered_json plan_json(const PlannedJob& planned)
     json["tiles"] = b.tiles;
     json["tiles_in_flight"] = b.tiles_in_flight;
     json["threads"] = b.threads;
+    json["devices"] = devices_json(planned.devices);
     json["memory_bytes"] = {{"allowed", b.memory_bytes},  {"estimate", b.estimate_bytes},
                             {"prepare", b.prepare_bytes}, {"coarse", b.coarse_bytes},
                             {"tiles", b.tiles_bytes},     {"refine", b.refine_bytes}};
@@ -73,6 +89,7 @@ void print_table(const PlannedJob& planned)
     }
     fmt::print("tiles     {}\n", tile_text(b));
     fmt::print("threads   {}\n", b.threads);
+    fmt::print("devices   {}\n", planned.devices.text());
     fmt::print(
         "memory    {:.0f} MiB at most, of {:.0f} allowed (prepare {:.0f}, coarse {:.0f}, "
         "tiles {:.0f}, refine {:.0f})\n",
@@ -100,6 +117,12 @@ void log_plan(const PlannedJob& planned)
         planned.shape.left.cols, planned.shape.left.rows, range.min, range.max,
         name(planned.job.matcher.mode), name(planned.job.matcher.cost), planned.levels.levels(),
         tile_text(planned.budget), mebi(planned.budget.estimate_bytes));
+    if (!planned.devices.note.empty()) {
+        spdlog::info("no CUDA device takes part: {}", planned.devices.note);
+    }
+    if (!planned.devices.cuda.empty()) {
+        spdlog::info("matching on {}", planned.devices.text());
+    }
 }
 
 void log_summary(const MatchSummary& summary, const PlannedJob& planned)

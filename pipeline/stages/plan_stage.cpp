@@ -66,6 +66,7 @@ PlannedJob plan_job(const Job& job)
         planned.levels = matcher.plan();
         planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
         planned.budget = make_budget(matcher, planned.job, planned.pyramid_levels);
+        planned.devices = plan_devices(device_choice(job.run.device), matcher, planned.budget);
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }

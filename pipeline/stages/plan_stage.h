@@ -2,6 +2,7 @@
 
 #include "io/geo_reference.h"
 #include "pipeline/budget.h"
+#include "pipeline/device_plan.h"
 #include "pipeline/job.h"
 
 namespace hsgm::pipeline {
@@ -12,6 +13,7 @@ struct PlannedJob {
     matcher::PairShape shape;
     matcher::LevelPlan levels;
     Budget budget;
+    DevicePlan devices;
     io::GeoReference geo; ///< of a rectified left image; its rasters inherit it
     int pyramid_levels = 1;
 };

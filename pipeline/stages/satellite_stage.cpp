@@ -1,5 +1,6 @@
 #include "pipeline/stages/satellite_stage.h"
 
+#include "io/hillshade.h"
 #include "pipeline/dsm/dsm_grid.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/geometry/pair_geometry.h"
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hsgm::pipeline {
@@ -62,7 +64,13 @@ DsmSummary write_satellite_heights(const Job& job)
 
 std::int64_t satellite_bytes(const Job& job, int threads)
 {
-    return dsm_bytes(job.satellite->pair->frame.gsd_m, cell_m(job), threads);
+    const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
+    // However the frame lies on the map, the DSM's sides are not longer than its diagonal.
+    const double side =
+        std::hypot(frame.size.rows, frame.size.cols) * frame.gsd_m / cell_m(job);
+    const int cells = static_cast<int>(std::min(side, 1e9)) + 1;
+    return std::max(dsm_bytes(frame.gsd_m, cell_m(job), threads),
+                    job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells}));
 }
 
 std::int64_t satellite_output_bytes(const Job& job)

@@ -13,7 +13,7 @@ void plan_satellite(Job& job);
 /// Heights and DSM of a raw pair from its finished disparities and confidences.
 DsmSummary write_satellite_heights(const Job& job);
 
-/// What `write_satellite_heights` takes at most with this many threads.
+/// What heights, DSM and its shading take at most with this many threads.
 std::int64_t satellite_bytes(const Job& job, int threads);
 
 /// What the DSM and its sidecars take at most on the disk, uncompressed.

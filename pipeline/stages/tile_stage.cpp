@@ -1,7 +1,7 @@
 #include "pipeline/stages/tile_stage.h"
 
 #include "io/error.h"
-#include "pipeline/cpu_worker.h"
+#include "pipeline/cuda_worker.h"
 #include "pipeline/error.h"
 #include "pipeline/freed_memory.h"
 #include "pipeline/ledger/recorder.h"
@@ -232,15 +232,17 @@ void TileRun::carry_out(WorkerPool& pool, int tiles_in_flight)
 }
 
 std::vector<std::shared_ptr<MatchWorker>>
-make_workers(const PlannedJob& planned, const RunManner& manner, const PairBasis& pair,
-             const std::shared_ptr<const matcher::CoarseSolution>& coarse)
+workers_for(const PlannedJob& planned, const RunManner& manner, const PairBasis& pair,
+            const std::shared_ptr<const matcher::CoarseSolution>& coarse)
 {
     const auto arena = std::make_shared<tbb::task_arena>(planned.budget.threads);
-    std::vector<std::shared_ptr<MatchWorker>> workers;
-    for (int i = 0; i < planned.budget.workers; ++i) {
-        std::shared_ptr<MatchWorker> worker =
-            std::make_shared<CpuWorker>(i, pair.matcher, coarse, arena);
-        workers.push_back(manner.adapt_worker ? manner.adapt_worker(worker) : worker);
+    const auto trouble = [](const std::string& why) { spdlog::warn("{}", why); };
+    auto workers =
+        make_workers(planned.devices, planned.budget, {pair.matcher, coarse, arena}, trouble);
+    if (manner.adapt_worker) {
+        for (auto& worker : workers) {
+            worker = manner.adapt_worker(worker);
+        }
     }
     return workers;
 }
@@ -268,7 +270,7 @@ void match_tiles(const PlannedJob& planned, const RunLayout& layout, tiling::Sha
     }
     ledger::Recorder recorder(*book, make_durable);
     TileRun run(pair, *part, recorder, std::move(tiles), progress);
-    WorkerPool pool(make_workers(planned, manner, pair, coarse),
+    WorkerPool pool(workers_for(planned, manner, pair, coarse),
                     {planned.job.run.tile_limit_s, planned.job.run.tile_grace_s});
     run.carry_out(pool, planned.budget.tiles_in_flight);
 }

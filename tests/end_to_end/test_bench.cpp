@@ -49,8 +49,8 @@ std::set<std::string> keys_of(const json& object)
 const std::set<std::string> kOfAll{
     "title",       "matcher",        "mode",         "threads",     "compared_with", "seconds",
     "cells_per_s", "time_over_base", "memory_bytes", "bad_percent", "cpu_seconds"};
-const std::set<std::string> kOfOurs{"cost",         "paths", "prune",
-                                    "instructions", "work",  "stages_s"};
+const std::set<std::string> kOfOurs{"cost",   "paths", "prune",   "instructions",
+                                    "device", "work",  "stages_s"};
 
 void check_measured(const json& m, const json& pair)
 {

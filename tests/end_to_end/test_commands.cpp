@@ -1,9 +1,33 @@
 #include "tests/end_to_end/pairs.h"
 #include "tests/end_to_end/rasters.h"
 
+#include <algorithm>
+#include <cmath>
+
 using namespace hsgm::tests;
 using Catch::Matchers::Contains;
 using nlohmann::json;
+
+namespace {
+
+// Hides the CUDA devices that this machine may have.
+class NoDevices {
+public:
+    NoDevices() { setenv("CUDA_VISIBLE_DEVICES", "-1", 1); }
+    ~NoDevices() { unsetenv("CUDA_VISIBLE_DEVICES"); }
+};
+
+// NaN, which differs from itself, as the number that stands for it in the file.
+std::vector<double> all_pixels_of(const std::string& path)
+{
+    const auto image = pixels_of(path);
+    std::vector<double> pixels(image.data(), image.data() + image.size().area());
+    std::replace_if(
+        pixels.begin(), pixels.end(), [](double v) { return std::isnan(v); }, -32768.0);
+    return pixels;
+}
+
+} // namespace
 
 TEST_CASE("every command has help with an example")
 {
@@ -25,6 +49,22 @@ TEST_CASE("every command has help with an example")
     CHECK_THAT(hsgm_does({"info", "--help"}).out, Contains("hsgm info"));
     CHECK_THAT(hsgm_does({"info"}).out, Contains("GDAL"));
     CHECK_THAT(hsgm_does({"--version"}).out, Contains("hsgm 0."));
+}
+
+TEST_CASE("where no CUDA device can be used, info says why and auto matches on the processor")
+{
+    const NoDevices none;
+    CHECK_THAT(hsgm_does({"info"}).out, Contains("\ndevices   cpu (no CUDA device: "));
+    const TemporaryFolder folder;
+    make_pair(folder);
+    for (const std::string device : {"auto", "cpu"}) {
+        hsgm_does({"match", folder / "left.tif", folder / "right.tif", "-o",
+                   folder / (device + ".tif"), "--disparity", "0,10", "--device", device});
+    }
+    CHECK(all_pixels_of(folder / "auto.tif") == all_pixels_of(folder / "cpu.tif"));
+    put_bytes(folder / "run.yaml", pair_config());
+    const json plan = json::parse(hsgm_does({"plan", folder / "run.yaml", "--json"}).out);
+    CHECK(plan["devices"] == json::parse(R"([{"device": "cpu"}])"));
 }
 
 TEST_CASE("plan tells as JSON what a run would do, and writes nothing")

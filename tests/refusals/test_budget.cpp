@@ -34,10 +34,10 @@ TEST_CASE("a device that is not there is refused")
     EarlierResult place;
     for (const std::string device : {"cuda", "cuda:1"}) {
         place.refused_pair("left.tif", "right.tif", 4,
-                           {"run.device", "'" + device + "'", "no CUDA worker", "auto or cpu"},
+                           {"run.device", "'" + device + "'", "no CUDA device", "auto or cpu"},
                            {"--device", device});
     }
     put_bytes(place / "bad.yaml", pair_config() + "run: {device: cuda}\n");
     place.remember();
-    place.refused({"run", place / "bad.yaml"}, 4, {"bad.yaml:5:15", "no CUDA worker"});
+    place.refused({"run", place / "bad.yaml"}, 4, {"bad.yaml:5:15", "no CUDA device"});
 }

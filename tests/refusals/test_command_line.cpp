@@ -79,8 +79,8 @@ TEST_CASE("a benchmark that makes no sense is refused before it takes any time")
         more.insert(more.begin(), "bench");
         place.refused(more, code, words);
     };
-    refused({"--device", "cuda"}, 4, {"--device cuda", "no CUDA device", "auto or cpu"});
-    refused({"--device", "cuda:1"}, 4, {"--device cuda:1"});
+    refused({"--device", "cuda"}, 4, {"--device is 'cuda'", "no CUDA device", "auto or cpu"});
+    refused({"--device", "cuda:1"}, 4, {"--device is 'cuda:1'"});
     refused({"--device", "banana"}, 2, {"'banana'", "auto, cpu, cuda or cuda:N"});
     refused({"--disparities", "100"}, 2, {"--disparities is 100", "multiple of 16"});
     refused({"--side", "256", "--disparities", "80"}, 2,

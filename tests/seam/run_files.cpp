@@ -122,15 +122,20 @@ pipeline::Job write_pair(const StereoPair& pair, Storage storage,
     return job;
 }
 
-std::vector<StoredRaster> run(const pipeline::Job& job)
+std::vector<StoredRaster> stored_rasters(const std::vector<std::filesystem::path>& paths)
 {
-    pipeline::run_job(pipeline::plan_job(job), [](int, int) {});
     std::vector<StoredRaster> rasters;
-    for (const auto& path : {job.outputs.disparity, job.outputs.confidence, job.outputs.reasons,
-                             job.outputs.height, job.outputs.hillshade}) {
+    for (const auto& path : paths) {
         rasters.push_back({path.filename().string(), bytes_of(path), pixels_of(path)});
     }
     return rasters;
+}
+
+std::vector<StoredRaster> run(const pipeline::Job& job)
+{
+    pipeline::run_job(pipeline::plan_job(job), [](int, int) {});
+    return stored_rasters({job.outputs.disparity, job.outputs.confidence, job.outputs.reasons,
+                           job.outputs.height, job.outputs.hillshade});
 }
 
 std::string difference(const std::vector<StoredRaster>& a, const std::vector<StoredRaster>& b)

@@ -47,6 +47,9 @@ struct StoredRaster {
     std::vector<double> pixels; ///< decoded; nodata is a number of its own
 };
 
+/// What lies in these files.
+std::vector<StoredRaster> stored_rasters(const std::vector<std::filesystem::path>& paths);
+
 /// Plans and carries out the job, and reads its rasters; the files stay.
 std::vector<StoredRaster> run(const pipeline::Job& job);
 

@@ -52,6 +52,31 @@ TEST_CASE("contenders differ from the base in one thing each")
     CHECK(all[3].instructions == Instructions::avx2);
 }
 
+TEST_CASE("a device is measured with every cost, and once without pruning, against the base")
+{
+    BenchSettings settings;
+    settings.costs = {Cost::census7x7, Cost::hmi};
+    settings.threads = {2};
+    settings.devices.resize(1);
+    settings.devices[0].number = 3;
+    const auto all = contenders(settings);
+    CHECK(titles(all) == std::vector<std::string>{
+                             "hsgm census7x7 x2",
+                             "hsgm census7x7, not pruned x2",
+                             "hsgm hmi x2",
+                             "hsgm census7x7, cuda:3 x2",
+                             "hsgm census7x7, cuda:3, not pruned x2",
+                             "hsgm hmi, cuda:3 x2",
+                         });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        CHECK(all[i].base == 0);
+        CHECK(all[i].device.has_value() == (i >= 3));
+    }
+    CHECK(all[3].options.prune);
+    CHECK_FALSE(all[4].options.prune);
+    CHECK(all[5].options.cost == Cost::hmi);
+}
+
 TEST_CASE("a mode that never prunes has no contender without pruning")
 {
     BenchSettings settings;
