@@ -95,6 +95,8 @@ TEST_CASE("every configuration that is shipped works")
 {
     const TemporaryFolder folder;
     make_pair(folder, {64, 400});
+    hsgm_does({"synth", std::string(HSGM_CONFIGS_DIR) + "/scene-orbit.yaml", "-o",
+               folder / "raw", "--set", "size=[300,300]"});
     int scenes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(HSGM_CONFIGS_DIR)) {
         const std::string path = entry.path().string();
@@ -106,8 +108,10 @@ TEST_CASE("every configuration that is shipped works")
             ++scenes;
             hsgm_does({"synth", path, "-o", folder / "scene", "--set", "size=[24,40]"});
         } else {
-            hsgm_does({"plan", path, "--set", "pair.left=" + (folder / "left.tif"), "--set",
-                       "pair.right=" + (folder / "right.tif")});
+            const bool raw = entry.path().filename() == "demo.yaml"; // wants images with RPCs
+            const std::string pair = raw ? "raw/" : "";
+            hsgm_does({"plan", path, "--set", "pair.left=" + (folder / (pair + "left.tif")),
+                       "--set", "pair.right=" + (folder / (pair + "right.tif"))});
         }
     }
     CHECK(scenes >= 4);
