@@ -20,7 +20,7 @@ struct Unfinished {
     std::string ledger() const { return place.result() + "/ledger/tiles-0-of-1.sqlite"; }
     std::string part(const char* name) const
     {
-        return place.result() + "/work/tiles-0-of-1/0/" + name;
+        return fs::path(place.result()) / "work" / "tiles-0-of-1" / "0" / name;
     }
     void resumes_to_the_same(const std::string& words) const
     {
