@@ -51,11 +51,10 @@ struct NoSums {
     HWY_INLINE void add(V)
     {
     }
-    HWY_INLINE void add_at(int, V) {}
 };
 
-// Sums of a pixel with up to four vectors of costs, in registers: of 16-bit lanes that hold
-// two costs each, the sum of both and the sum of the high ones.
+// Sums of up to four vectors of a pixel's costs, in registers: of 16-bit lanes that hold two
+// costs each, the sum of both and the sum of the high ones.
 template <class D, int kVectors>
 class RegisterSums {
     using D16 = hn::Repartition<std::uint16_t, D>;
@@ -105,40 +104,19 @@ private:
     hn::Vec<D16> highs_[kVectors];
 };
 
-// Sums of a pixel with any number of vectors, in memory.
-template <class D>
-class MemorySums {
-    static constexpr int kN = int(hn::MaxLanes(D()));
-
-public:
-    HWY_INLINE MemorySums(const std::uint8_t* first, bool store, std::uint16_t* sums,
-                          int stride)
-        : sums_(sums), stride_(stride)
-    {
-        for (int i = 0; i < stride; i += kN) {
-            add_to_sums(D(), hn::LoadU(D(), first + i), i, stride, sums, store);
-        }
-    }
-    HWY_INLINE void add_at(int i, hn::Vec<D> costs)
-    {
-        add_to_sums(D(), costs, i, stride_, sums_, false);
-    }
-
-private:
-    std::uint16_t* sums_;
-    int stride_;
-};
-
 // Eq. 1. `kVectors` vectors of kLanes hold a pixel's costs; 0: any number.
 template <int kLanes, int kVectors>
 class WindowStep {
     using D = hn::CappedTag<std::uint8_t, kLanes>;
     using V = hn::Vec<D>;
     static constexpr int kN = int(hn::MaxLanes(D()));
+    // Vectors whose sums are in registers at once.
+    static constexpr int kAtOnce = 4;
 
 public:
     WindowStep(int stride, int p1)
-        : stride_(stride), p1_(hn::Set(D(), static_cast<std::uint8_t>(p1)))
+        : stride_(kVectors > 0 ? kVectors * kN : stride),
+          p1_(hn::Set(D(), static_cast<std::uint8_t>(p1)))
     {
     }
 
@@ -147,8 +125,16 @@ public:
                                    std::uint8_t p2, const std::uint8_t* costs,
                                    std::uint8_t* now) const
     {
+        Pixel p = pixel(before, before_least, p2, now);
         NoSums<V> none;
-        return step(before, before_least, p2, costs, now, none);
+        int at = 0;
+        for (; at + kAtOnce * kN <= stride(); at += kAtOnce * kN) {
+            vectors<kAtOnce>(p, costs, at, none);
+        }
+        for (; at < stride(); at += kN) {
+            vectors<1>(p, costs, at, none);
+        }
+        return least_lane(D(), p.minimum);
     }
 
     // kCount paths at every pixel of a row, and the sums of these and the path along the
@@ -156,29 +142,18 @@ public:
     template <bool kFirst, int kCount>
     HWY_INLINE void sum_row(const SumRow& row, const std::array<StepPath, 3>& paths) const
     {
-        const std::array<StepPath, 3> path = paths;
-        const std::uint8_t* along = row.along;
-        const std::uint8_t* costs = row.costs;
-        std::uint16_t* sums = row.sums;
+        SumRow at = row;
         for (int i = 0; i < row.cols; ++i) {
-            if constexpr (kVectors > 0) {
-                RegisterSums<D, kVectors> pixel(along);
-                follow_all<kCount>(path, i, row.pitch, costs, pixel);
-                pixel.template finish<kFirst>(sums, stride_);
-            } else {
-                MemorySums<D> pixel(along, kFirst, sums, stride_);
-                follow_all<kCount>(path, i, row.pitch, costs, pixel);
-            }
-            along += row.along_step;
-            costs += stride_;
-            sums += stride_;
+            sum_pixel<kFirst, kCount>(at, paths, i);
+            at.along += row.along_step;
+            at.costs += stride();
+            at.sums += stride();
         }
     }
 
 private:
     struct Pixel {
         const std::uint8_t* before;
-        const std::uint8_t* costs;
         std::uint8_t* now;
         V least;
         V jump;
@@ -186,63 +161,81 @@ private:
         V minimum;
     };
 
-    template <int kCount, class Sums>
-    HWY_INLINE void follow_all(const std::array<StepPath, 3>& paths, int pixel,
-                               std::size_t pitch, const std::uint8_t* costs, Sums& sums) const
-    {
-        if constexpr (kCount > 0) {
-            follow_one(paths[0], pixel, pitch, costs, sums);
-        }
-        if constexpr (kCount == 3) {
-            follow_one(paths[1], pixel, pitch, costs, sums);
-            follow_one(paths[2], pixel, pitch, costs, sums);
-        }
-    }
-    template <class Sums>
-    HWY_INLINE void follow_one(const StepPath& path, int pixel, std::size_t pitch,
-                               const std::uint8_t* costs, Sums& sums) const
-    {
-        std::uint8_t* values = path.values + std::size_t(pixel) * pitch;
-        path.least[pixel] =
-            step(values, path.least[pixel], path.p2[pixel], costs, values, sums);
-    }
+    HWY_INLINE int stride() const { return kVectors > 0 ? kVectors * kN : stride_; }
 
-    template <class Sums>
-    HWY_INLINE std::uint8_t step(const std::uint8_t* before, std::uint8_t before_least,
-                                 std::uint8_t p2, const std::uint8_t* costs, std::uint8_t* now,
-                                 Sums& sums) const
+    HWY_INLINE Pixel pixel(const std::uint8_t* before, std::uint8_t before_least,
+                           std::uint8_t p2, std::uint8_t* now) const
     {
         const D d;
-        Pixel p;
-        p.before = before;
-        p.costs = costs;
-        p.now = now;
-        p.least = hn::Set(d, before_least);
+        const auto least = hn::Set(d, before_least);
         // Saturated: where a path starts in disparities the coarser level never searched,
         // even the least cost may be dear.
-        p.jump = hn::SaturatedAdd(p.least, hn::Set(d, p2));
-        p.below = hn::LoadU(d, before - 1);
-        p.minimum = hn::Set(d, std::uint8_t{255});
-        if constexpr (kVectors > 0) {
-            vectors<0>(p, sums);
-        } else {
-            for (int i = 0; i < stride_; i += kN) {
-                sums.add_at(i, vector(p, i));
-            }
-        }
-        return least_lane(d, p.minimum);
+        return {before,
+                now,
+                least,
+                hn::SaturatedAdd(least, hn::Set(d, p2)),
+                hn::LoadU(d, before - 1),
+                hn::Set(d, std::uint8_t{255})};
     }
-
-    template <int kVector, class Sums>
-    HWY_INLINE void vectors(Pixel& p, Sums& sums) const
+    HWY_INLINE Pixel pixel(const StepPath& path, int number, std::size_t pitch) const
     {
-        if constexpr (kVector < kVectors) {
-            sums.template add<kVector>(vector(p, kVector * kN));
-            vectors<kVector + 1>(p, sums);
+        std::uint8_t* values = path.values + std::size_t(number) * pitch;
+        return pixel(values, path.least[number], path.p2[number], values);
+    }
+
+    // Some vectors of all paths, then the next: so a path's least cost so far waits in a
+    // register, not the sums of all vectors.
+    template <bool kFirst, int kCount>
+    HWY_INLINE void sum_pixel(const SumRow& row, const std::array<StepPath, 3>& paths,
+                              int number) const
+    {
+        Pixel a = pixel(paths[0], number, row.pitch);
+        Pixel b = kCount > 1 ? pixel(paths[1], number, row.pitch) : a;
+        Pixel c = kCount > 2 ? pixel(paths[2], number, row.pitch) : a;
+        int at = 0;
+        for (; at + kAtOnce * kN <= stride(); at += kAtOnce * kN) {
+            sum_vectors<kFirst, kCount, kAtOnce>(row, at, a, b, c);
+        }
+        for (; at < stride(); at += kN) {
+            sum_vectors<kFirst, kCount, 1>(row, at, a, b, c);
+        }
+        if constexpr (kCount > 0) {
+            paths[0].least[number] = least_lane(D(), a.minimum);
+        }
+        if constexpr (kCount > 1) {
+            paths[1].least[number] = least_lane(D(), b.minimum);
+        }
+        if constexpr (kCount > 2) {
+            paths[2].least[number] = least_lane(D(), c.minimum);
         }
     }
 
-    HWY_INLINE V vector(Pixel& p, int i) const
+    template <bool kFirst, int kCount, int kSome>
+    HWY_INLINE void sum_vectors(const SumRow& row, int at, Pixel& a, Pixel& b, Pixel& c) const
+    {
+        RegisterSums<D, kSome> sums(row.along + at);
+        if constexpr (kCount > 0) {
+            vectors<kSome>(a, row.costs, at, sums);
+        }
+        if constexpr (kCount > 1) {
+            vectors<kSome>(b, row.costs, at, sums);
+        }
+        if constexpr (kCount > 2) {
+            vectors<kSome>(c, row.costs, at, sums);
+        }
+        sums.template finish<kFirst>(row.sums + at / 2, stride());
+    }
+
+    template <int kSome, int kVector = 0, class Sums>
+    HWY_INLINE void vectors(Pixel& p, const std::uint8_t* costs, int at, Sums& sums) const
+    {
+        if constexpr (kVector < kSome) {
+            sums.template add<kVector>(vector(p, costs, at + kVector * kN));
+            vectors<kSome, kVector + 1>(p, costs, at, sums);
+        }
+    }
+
+    HWY_INLINE V vector(Pixel& p, const std::uint8_t* costs, int i) const
     {
         const D d;
         const auto same = hn::LoadU(d, p.before + i);
@@ -251,7 +244,7 @@ private:
         // Read before `now`, which may lie over it, is written.
         p.below = hn::LoadU(d, p.before + i + kN - 1);
         const auto best = hn::Min(hn::Min(same, p.jump), aside);
-        const auto path = hn::SaturatedAdd(hn::LoadU(d, p.costs + i), hn::Sub(best, p.least));
+        const auto path = hn::SaturatedAdd(hn::LoadU(d, costs + i), hn::Sub(best, p.least));
         hn::StoreU(path, d, p.now + i);
         p.minimum = hn::Min(p.minimum, path);
         return path;
