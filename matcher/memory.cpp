@@ -1,6 +1,7 @@
 #include "matcher/memory.h"
 
 #include "matcher/host/level_features.h"
+#include "matcher/host/window_paths.h"
 #include "matcher/kernel.h"
 
 #include <algorithm>
@@ -94,8 +95,11 @@ std::int64_t Matcher::coarse_bytes() const
     const int count = plan_.ranges.back().count();
     const std::int64_t cells = size.area() * padded_count(count);
     const std::int64_t rows = options_.paths == 16 ? 3 : 2;
+    const bool passes = options_.fits_8_bits() && options_.mode != Mode::hsgm_paper;
     const std::int64_t path_rows =
-        rows * size.cols * std::int64_t{padded_count(count) + 16} * path_bytes(options_);
+        rows * size.cols * std::int64_t{padded_count(count) + 16} * path_bytes(options_) +
+        (passes ? host::whole_level_path_bytes(size, padded_count(count)) + 4 * size.area()
+                : 0);
     const LevelSupport whole{rect_of(size), rect_of(size), rect_of(size),
                              rect_of(plan_.right_sizes.back())};
     const std::int64_t outputs =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tiling/page_allocator.h"
 #include "tiling/rect.h"
 
 #include <cassert>
@@ -99,7 +100,7 @@ private:
     }
 
     Size size_{};
-    std::vector<T> pixels_;
+    std::vector<T, PageAllocator<T>> pixels_;
 };
 
 /// Pixels of a part of a larger raster, addressed by the raster's global (row, col).

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tbb/cache_aligned_allocator.h>
+#include "tiling/page_allocator.h"
 
 #include <cstddef>
 #include <vector>
@@ -12,7 +12,7 @@ namespace hsgm::matcher::host {
 template <typename T>
 class Buffer {
 public:
-    /// At least `count` elements; their old content is not kept.
+    /// At least `count` elements; their old content is not kept, new ones have no value.
     T* need(std::size_t count)
     {
         if (count > data_.size()) {
@@ -25,7 +25,7 @@ public:
     const T* data() const { return data_.data(); }
 
 private:
-    std::vector<T, tbb::cache_aligned_allocator<T>> data_;
+    std::vector<T, tiling::PageAllocator<T>> data_;
 };
 
 } // namespace hsgm::matcher::host

@@ -123,7 +123,7 @@ WindowJob window_job(const LevelJob<std::uint8_t>& job, const BlockVolumes& volu
     WindowJob window;
     window.core = volumes.core;
     window.image = rect_of(job.features->left_size);
-    window.halo_px = job.options->halo_px;
+    window.halo_px = job.whole ? 0 : job.options->halo_px;
     window.paths = job.options->paths;
     window.cost = volumes.cost;
     window.p1 = job.options->p1;
@@ -131,6 +131,7 @@ WindowJob window_job(const LevelJob<std::uint8_t>& job, const BlockVolumes& volu
     window.start = start;
     window.sums = volumes.sums;
     window.lines = lines;
+    window.spread_over_threads = job.whole;
     return window;
 }
 
@@ -156,7 +157,7 @@ BlockSums solve_block(const LevelJob<L>& job, const Rect& core, tiling::Disparit
     auto* const kept = job.keep_lines ? &lines : nullptr;
     std::size_t done = 0;
     if constexpr (sizeof(L) == 1) {
-        if (!job.whole && solves_by_passes<L>(*job.options)) {
+        if (solves_by_passes<L>(*job.options)) {
             window_paths(window_job(job, volumes, start_or_none, kept), workspace.window);
             done = std::min<std::size_t>(paths.size(), kWindowPaths);
         }

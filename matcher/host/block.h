@@ -42,8 +42,8 @@ struct BlockWorkspace {
     WindowWorkspace window;
 };
 
-/// Whether windows are solved in two passes over 8-bit costs (window_paths.h); the others,
-/// and levels solved whole, one direction after the other (sweep.h).
+/// Whether blocks are solved in two passes over 8-bit costs (window_paths.h); the others one
+/// direction after the other (sweep.h).
 template <typename L>
 bool solves_by_passes(const Options& options)
 {

@@ -96,6 +96,11 @@ std::shared_ptr<const CoarseSolution> Levels<L>::solve_whole(const LevelImages& 
     const auto features = level_features(images, plan_, level, image, pair_, options_);
     LevelJob<L> whole = job(level, features);
     whole.whole = true;
+    PenaltyMaps penalties;
+    if (solves_by_passes<L>(options_)) {
+        penalties = PenaltyMaps(features.left_tone, image, options_);
+        whole.penalties = &penalties;
+    }
     auto result = std::make_shared<CoarseSolutionOf<L>>();
     auto& block = result->level.blocks.emplace_back();
     BlockWorkspace<L> workspace;

@@ -1,5 +1,8 @@
 #include "matcher/host/window_paths.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -16,6 +19,8 @@ namespace hsgm::matcher::host::HWY_NAMESPACE {
 
 // Rows followed side by side by the path along them: each pixel waits for the one before.
 constexpr int kRowsAlong = 4;
+// What a thread gets of a row that is shared out.
+constexpr int kSharedBytes = 32768;
 
 // One path that comes from the row before. Its costs live in one slot for each pixel of a
 // row; a slot's new costs replace those of its predecessor, so diagonals move by one slot a
@@ -73,10 +78,10 @@ public:
                 }
             }
         }
-        for (int i = 0; i < core.rows; i += kRowsAlong) {
-            const int rows = std::min(kRowsAlong, core.rows - i);
+        for (int i = 0; i < core.rows; i += rows_along()) {
+            const int rows = std::min(rows_along(), core.rows - i);
             const int first = down_ ? core.row + i : core.row_end() - i - rows;
-            rows == kRowsAlong ? along_rows<kRowsAlong>(first) : along_rows_singly(first, rows);
+            follow_along(first, rows);
             for (int k = 0; k < rows; ++k) {
                 core_row(down_ ? first + k : first + rows - 1 - k, first);
             }
@@ -85,6 +90,9 @@ public:
 
 private:
     static constexpr std::size_t kApart = 3;
+
+    // Rows whose paths along them are kept: all threads have some to follow.
+    int rows_along() const { return job_.spread_over_threads ? kSharedRows : kRowsAlong; }
 
     tiling::Rect region_of(Direction r) const
     {
@@ -104,8 +112,8 @@ private:
         along_region_ = region_of(r);
         // One slot before the first pixel holds its predecessor.
         along_pitch_ = pitch_ * std::size_t(along_region_.cols + 1) + kSlotGuard;
-        along_ = workspace.along.need(along_pitch_ * kRowsAlong + kReadBeyond);
-        for (int k = 0; k < kRowsAlong; ++k) {
+        along_ = workspace.along.need(along_pitch_ * std::size_t(rows_along()) + kReadBeyond);
+        for (int k = 0; k < rows_along(); ++k) {
             guard(along_ + std::size_t(k) * along_pitch_, along_region_.cols + 1);
         }
     }
@@ -191,30 +199,44 @@ private:
             follow(path, row, path.region.col, core.col);
             follow(path, row, core.col_end(), path.region.col_end());
         }
-        SumRow sum;
-        sum.along = along_at(row - first_along, core.col);
-        sum.along_step = along_direction_.col * std::ptrdiff_t(pitch_);
-        sum.pitch = pitch_;
-        sum.costs = job_.cost.at(row, core.col);
-        sum.sums = job_.sums +
-                   std::size_t(row - core.row) * std::size_t(core.cols) * std::size_t(stride_);
-        sum.cols = core.cols;
-        down_ ? sum_row<true>(sum, row) : sum_row<false>(sum, row);
+        const auto part = [&](int col, int cols) {
+            down_ ? sum_row<true>(row, col, cols, row - first_along)
+                  : sum_row<false>(row, col, cols, row - first_along);
+        };
+        if (job_.spread_over_threads) {
+            tbb::parallel_for(tbb::blocked_range<int>(0, core.cols, kSharedBytes / stride_ + 1),
+                              [&](const tbb::blocked_range<int>& cols) {
+                                  part(core.col + cols.begin(), int(cols.size()));
+                              });
+        } else {
+            part(core.col, core.cols);
+        }
         for (int k = 0; k < apart_count_; ++k) {
             keep_apart(apart_[std::size_t(k)], row);
             ++apart_[std::size_t(k)].travelled;
         }
     }
 
+    // Pixels of a row of the core; the path along it is number `along` of those followed.
     template <bool kFirst>
-    void sum_row(const SumRow& sum, int row)
+    void sum_row(int row, int col, int cols, int along)
     {
+        const tiling::Rect& core = job_.core;
+        SumRow sum;
+        sum.along = along_at(along, col);
+        sum.along_step = along_direction_.col * std::ptrdiff_t(pitch_);
+        sum.pitch = pitch_;
+        sum.costs = job_.cost.at(row, col);
+        sum.sums = job_.sums + (std::size_t(row - core.row) * std::size_t(core.cols) +
+                                std::size_t(col - core.col)) *
+                                   std::size_t(stride_);
+        sum.cols = cols;
         std::array<StepPath, kApart> paths;
         for (int k = 0; k < apart_count_; ++k) {
             const ApartPath& path = apart_[std::size_t(k)];
-            const std::size_t slot = path.slot(job_.core.col);
+            const std::size_t slot = path.slot(col);
             paths[std::size_t(k)] = {path.values + slot * pitch_, path.least + slot,
-                                     job_.penalties->at(path.r, row, job_.core.col)};
+                                     job_.penalties->at(path.r, row, col)};
         }
         switch (apart_count_) {
         case 3:
@@ -235,16 +257,28 @@ private:
                kSlotGuard;
     }
 
-    void along_rows_singly(int first, int rows)
+    // The paths along `rows` rows from `first` on.
+    void follow_along(int first, int rows)
     {
-        for (int k = 0; k < rows; ++k) {
-            along_rows<1>(first + k, k);
+        const auto some = [&](int k) {
+            if (k + kRowsAlong <= rows) {
+                along_rows<kRowsAlong>(first + k, k);
+                return;
+            }
+            for (; k < rows; ++k) {
+                along_rows<1>(first + k, k);
+            }
+        };
+        if (job_.spread_over_threads) {
+            tbb::parallel_for(0, rows, kRowsAlong, some);
+        } else {
+            some(0);
         }
     }
 
     // kRows rows from `first` on, kept from number `k` on.
     template <int kRows>
-    void along_rows(int first, int k = 0)
+    void along_rows(int first, int k)
     {
         const Direction r = along_direction_;
         const tiling::Rect& region = along_region_;
@@ -388,6 +422,13 @@ HWY_EXPORT(all_paths);
 void window_paths(const WindowJob& job, WindowWorkspace& workspace)
 {
     HWY_DYNAMIC_DISPATCH(all_paths)(job, workspace);
+}
+
+std::int64_t whole_level_path_bytes(tiling::Size size, int stride)
+{
+    const std::int64_t slot = stride + 16 + 1; // costs, guard, least
+    const std::int64_t apart = 2 * (std::int64_t{size.rows} + size.cols) + size.cols;
+    return (apart + std::int64_t{kSharedRows} * (size.cols + 1)) * slot;
 }
 
 } // namespace hsgm::matcher::host
