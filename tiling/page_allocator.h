@@ -42,7 +42,10 @@ public:
 #endif
         return static_cast<T*>(memory);
     }
-    void deallocate(T* memory, std::size_t) { std::free(memory); }
+    void deallocate(T* memory, std::size_t)
+    {
+        std::free(memory);
+    }
 
     template <typename U>
     void construct(U* at)
@@ -55,7 +58,10 @@ public:
         ::new (static_cast<void*>(at)) U(std::forward<Values>(values)...);
     }
 
-    bool operator==(const PageAllocator&) const { return true; }
+    bool operator==(const PageAllocator&) const
+    {
+        return true;
+    }
 
 private:
     static constexpr std::size_t kAlignment = 128;

@@ -51,7 +51,14 @@ public:
             std::copy_n(values, rect_.cols, to);
         }
     }
-    void write_validity(int row, const std::uint8_t* values) { write(planes_, row, values); }
+    void write_validity(int row, const std::uint8_t* values)
+    {
+        write(planes_, row, values);
+        has_gaps_ =
+            has_gaps_ || std::find(values, values + rect_.cols, 0) != values + rect_.cols;
+    }
+    /// Whether a pixel is not valid.
+    bool has_gaps() const { return has_gaps_; }
 
 private:
     std::size_t offset(int plane, int row) const
@@ -64,6 +71,7 @@ private:
     tiling::Rect rect_;
     int planes_ = 0;
     bool mirrored_ = false;
+    bool has_gaps_ = false;
     std::unique_ptr<std::uint8_t[]> data_;
 };
 

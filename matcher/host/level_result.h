@@ -44,10 +44,12 @@ template <typename L>
 class LineStore {
 public:
     LineStore(const tiling::Rect& core, Direction direction, StartLines lines, int stride)
-        : core_(core), direction_(direction), lines_(lines), stride_(stride)
+        : core_(core), direction_(direction), lines_(lines), stride_(stride),
+          first_row_(first(core.row, core.row_end(), direction.row)),
+          first_col_(first(core.col, core.col_end(), direction.col))
     {
-        const int rows = count(core.row, core.row_end(), direction.row);
-        const int cols = count(core.col, core.col_end(), direction.col);
+        const int rows = count(first_row_, core.row_end());
+        const int cols = count(first_col_, core.col_end());
         row_values_ = std::size_t(rows) * std::size_t(core.cols) * std::size_t(stride);
         values_.resize(row_values_ +
                        std::size_t(cols) * std::size_t(core.rows) * std::size_t(stride) +
@@ -58,10 +60,7 @@ public:
     bool holds_col(int col) const { return lines_.holds(col, direction_.col); }
 
     /// The columns of the core for which holds_col is true: from first_col on, one a pitch.
-    int first_col() const
-    {
-        return direction_.col == 0 ? core_.col_end() : lines_.first(core_.col, direction_.col);
-    }
+    int first_col() const { return first_col_; }
     int col_pitch() const { return lines_.pitch(); }
 
     std::int64_t bytes() const { return static_cast<std::int64_t>(values_.size() * sizeof(L)); }
@@ -71,20 +70,24 @@ public:
 
 private:
     /// Whole vectors are read at the end of the last pixel.
-    static constexpr std::size_t kReadBeyond = 16;
+    static constexpr std::size_t kReadBeyond = 64;
 
-    int count(int begin, int end, int step) const
+    int first(int begin, int end, int step) const
     {
-        const int first = step == 0 ? end : lines_.first(begin, step);
+        return step == 0 ? end : lines_.first(begin, step);
+    }
+    int count(int first, int end) const
+    {
         return first >= end ? 0 : (end - 1 - first) / lines_.pitch() + 1;
     }
     std::size_t index(int row, int col) const
     {
-        if (holds_row(row)) {
-            const int slot = (row - lines_.first(core_.row, direction_.row)) / lines_.pitch();
-            return std::size_t(slot * core_.cols + col - core_.col) * std::size_t(stride_);
+        // Rows of the core that hold lie whole pitches from the first one.
+        const int slot_row = (row - first_row_) / lines_.pitch();
+        if (row >= first_row_ && slot_row * lines_.pitch() == row - first_row_) {
+            return std::size_t(slot_row * core_.cols + col - core_.col) * std::size_t(stride_);
         }
-        const int slot = (col - lines_.first(core_.col, direction_.col)) / lines_.pitch();
+        const int slot = (col - first_col_) / lines_.pitch();
         return row_values_ +
                std::size_t(slot * core_.rows + row - core_.row) * std::size_t(stride_);
     }
@@ -93,6 +96,8 @@ private:
     Direction direction_;
     StartLines lines_;
     int stride_;
+    int first_row_; ///< the first that holds; the core's end where none does
+    int first_col_;
     std::size_t row_values_ = 0;
     std::vector<L> values_;
 };

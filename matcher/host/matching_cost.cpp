@@ -14,8 +14,9 @@ namespace {
 
 // The right runs of a row, of which left pixel i meets entry cols - 1 - i + j at disparity
 // number j: in place where the image reaches that far, else copied, with entries that are not
-// valid where there is no image. `last_col` is the column of the first entry.
-void set_right(const FeaturePlanes& planes, int row, int last_col, CostRow& out,
+// valid where there is no image. `last_col` is the column of the first entry. Returns whether
+// all entries are valid.
+bool set_right(const FeaturePlanes& planes, int row, int last_col, CostRow& out,
                Buffer<std::uint8_t>& room)
 {
     const int met = out.met();
@@ -26,7 +27,8 @@ void set_right(const FeaturePlanes& planes, int row, int last_col, CostRow& out,
         out.right = planes.run(0, row) + at;
         out.right_pitch = static_cast<std::size_t>(planes.rect().cols);
         out.right_valid = planes.validity(row) + at;
-        return;
+        return !planes.has_gaps() ||
+               std::memchr(out.right_valid, 0, static_cast<std::size_t>(met)) == nullptr;
     }
     out.right_pitch = static_cast<std::size_t>(met) + FeaturePlanes::kReadBeyond;
     const auto size = out.right_pitch * static_cast<std::size_t>(planes.planes() + 1);
@@ -38,6 +40,7 @@ void set_right(const FeaturePlanes& planes, int row, int last_col, CostRow& out,
         std::copy_n(planes.run(plane, row) + at + begin, end - begin, to + begin);
         to += out.right_pitch;
     }
+    return false;
 }
 
 const std::uint8_t* padding(const CostRow& row, Buffer<std::uint8_t>& room)
@@ -62,9 +65,9 @@ CostRow cost_row(const LevelFeatures& features, const CostVolume& volume, int ro
     r.left = left.run(0, row) + left_at;
     r.left_pitch = static_cast<std::size_t>(left.rect().cols);
     r.left_valid = left.validity(row) + left_at;
-    set_right(features.right, row, col_end - 1 - volume.range.min, r, workspace.right);
-    r.plain = r.count == r.stride &&
-              std::memchr(r.right_valid, 0, static_cast<std::size_t>(r.met())) == nullptr;
+    const bool all_valid =
+        set_right(features.right, row, col_end - 1 - volume.range.min, r, workspace.right);
+    r.plain = all_valid && r.count == r.stride;
     if (!r.plain) {
         r.padding = padding(r, workspace.padding);
     }

@@ -94,7 +94,6 @@ void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int co
                              const RightCandidates& candidates)
 {
     auto& target = result_.right_keys;
-    const auto asked_first = static_cast<std::uint32_t>(range_min - pair_.shape.asked.min);
     const int last_col = col + part.cols - 1 - range_min;
     const int begin = std::max(0, last_col - (target.rect.col_end() - 1));
     const int end = std::min(part.cols + part.count - 1, last_col - target.rect.col + 1);
@@ -102,13 +101,8 @@ void TileOutput::merge_right(const SumsRow& part, int range_min, int row, int co
         return;
     }
     const std::scoped_lock lock(row_locks_[static_cast<std::size_t>(row) % kLocks]);
-    std::uint32_t* keys = &target.at(row, last_col - begin);
-    for (int j = begin; j < end; ++j, --keys) {
-        const std::uint32_t pixel = candidates.pixel(j);
-        const std::uint32_t index = std::uint32_t(j - (part.cols - 1)) + pixel + asked_first;
-        const std::uint32_t key = candidates.sum(j) << 16 | (index & 0xFFFFU);
-        *keys = std::min(*keys, pixel == RightCandidates::kNobody ? kNoKey : key);
-    }
+    candidates.lower_keys(begin, end, range_min - pair_.shape.asked.min - (part.cols - 1),
+                          &target.at(row, last_col - begin));
 }
 
 } // namespace hsgm::matcher::host

@@ -168,10 +168,14 @@ private:
             std::fill_n(out, stride_, std::uint8_t{0});
             return 0;
         }
-        const auto& block = job_.start->coarser->block_at(row / 2, col / 2);
-        return spread_start(block.lines[number].at(row / 2, col / 2), block.range,
-                            job_.cost.range, static_cast<std::uint8_t>(job_.start->unsearched),
-                            stride_, start_, out);
+        const int r = row / 2;
+        const int c = col / 2;
+        if (block_ == nullptr || !block_->core.contains(r, c)) {
+            block_ = &job_.start->coarser->block_at(r, c);
+        }
+        return spread_start(block_->lines[number].at(r, c), block_->range, job_.cost.range,
+                            static_cast<std::uint8_t>(job_.start->unsearched), stride_, start_,
+                            out);
     }
 
     // Pixels of a halo: the path alone, no sums.
@@ -362,6 +366,8 @@ private:
     tiling::Rect along_region_;
     std::size_t along_pitch_ = 0;
     std::uint8_t* along_ = nullptr;
+    // Where paths start, which levels that are shared out have none of.
+    const BlockResult<std::uint8_t>* block_ = nullptr; // of the last start
     std::uint8_t* start_ = nullptr;
 };
 

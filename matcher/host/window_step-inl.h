@@ -254,9 +254,41 @@ private:
     V p1_;
 };
 
+// Costs of pairs of disparities, of which one is even, from the coarse values v: `count` of
+// them, padded with 255 up to `stride`. Returns the least.
+template <bool kOddFirst>
+HWY_INLINE std::uint8_t spread_pairs(const std::uint8_t* v, int count, int stride,
+                                     std::uint8_t* out)
+{
+    const hn::FixedTag<std::uint8_t, 16> d;
+    const auto dear = hn::Set(d, std::uint8_t{255});
+    auto least = dear;
+    const auto put = [&](int i, auto values) HWY_ATTR {
+        if (i + 16 > count) {
+            const auto some = hn::FirstN(d, std::size_t(std::max(count - i, 0)));
+            values = hn::IfThenElse(some, values, dear);
+        }
+        least = hn::Min(least, values);
+        hn::StoreU(values, d, out + i);
+    };
+    for (int i = 0; i < stride; i += 32) {
+        const auto lower = hn::LoadU(d, v + i / 2);
+        const auto upper = hn::LoadU(d, v + i / 2 + 1);
+        const auto odd = hn::AverageRound(lower, upper);
+        const auto first = kOddFirst ? odd : lower;
+        const auto second = kOddFirst ? upper : odd;
+        put(i, hn::InterleaveLower(d, first, second));
+        if (i + 16 < stride) {
+            put(i + 16, hn::InterleaveUpper(d, first, second));
+        }
+    }
+    return least_lane(d, least);
+}
+
 // Where a path enters a window: the coarser level's costs `kept`, of the disparities
 // `coarse`, for the disparities `fine` (docs/algorithm.md, "Coarse start"), padded with 255
-// up to `stride`. Returns the least. `scratch` holds 2 * stride + 256 bytes.
+// up to `stride`. Returns the least. `scratch` holds 2 * stride + 256 bytes; 64 bytes may be
+// read beyond `kept`.
 HWY_INLINE std::uint8_t spread_start(const std::uint8_t* kept, tiling::DisparityRange coarse,
                                      tiling::DisparityRange fine, std::uint8_t unsearched,
                                      int stride, std::uint8_t* scratch, std::uint8_t* out)
@@ -265,39 +297,27 @@ HWY_INLINE std::uint8_t spread_start(const std::uint8_t* kept, tiling::Disparity
     const int count = fine.count();
     const int first = tiling::floor_div(fine.min, 2);
     const int values = count / 2 + 2;
-    // scratch[j]: the cost of coarse disparity first + j. Whole vectors, then what they
-    // wrote too much is filled: calls into the C library would take longer.
-    const int begin = std::max(first, coarse.min);
-    const int end = std::min(first + values, coarse.max + 1);
-    const auto fill = hn::Set(d, unsearched);
-    for (int j = 0; j < begin - first && j < values; j += 16) {
-        hn::StoreU(fill, d, scratch + j);
+    const std::uint8_t* v = kept + (first - coarse.min);
+    if (first < coarse.min || first + values - 1 > coarse.max) {
+        // scratch[j]: the cost of coarse disparity first + j. Whole vectors, then what they
+        // wrote too much is filled: calls into the C library would take longer.
+        const int begin = std::max(first, coarse.min);
+        const int end = std::min(first + values, coarse.max + 1);
+        const auto fill = hn::Set(d, unsearched);
+        for (int j = 0; j < begin - first && j < values; j += 16) {
+            hn::StoreU(fill, d, scratch + j);
+        }
+        for (int j = 0; j < end - begin; j += 16) {
+            hn::StoreU(hn::LoadU(d, kept + (begin - coarse.min) + j), d,
+                       scratch + (begin - first) + j);
+        }
+        for (int j = std::max(end - first, 0); j < values; j += 16) {
+            hn::StoreU(fill, d, scratch + j);
+        }
+        v = scratch;
     }
-    for (int j = 0; j < end - begin; j += 16) {
-        hn::StoreU(hn::LoadU(d, kept + (begin - coarse.min) + j), d,
-                   scratch + (begin - first) + j);
-    }
-    for (int j = std::max(end - first, 0); j < values; j += 16) {
-        hn::StoreU(fill, d, scratch + j);
-    }
-    std::uint8_t* spread = scratch + stride / 2 + 96;
-    for (int j = 0; j < values; j += 16) {
-        const auto even = hn::LoadU(d, scratch + j);
-        const auto odd = hn::AverageRound(even, hn::LoadU(d, scratch + j + 1));
-        hn::StoreU(hn::InterleaveLower(d, even, odd), d, spread + 2 * j);
-        hn::StoreU(hn::InterleaveUpper(d, even, odd), d, spread + 2 * j + 16);
-    }
-    spread += fine.min - 2 * first;
-    for (int i = count; i < stride; i += 16) {
-        hn::StoreU(hn::Set(d, std::uint8_t{255}), d, spread + i);
-    }
-    auto least = hn::Set(d, std::uint8_t{255});
-    for (int i = 0; i < stride; i += 16) {
-        const auto v = hn::LoadU(d, spread + i);
-        least = hn::Min(least, v);
-        hn::StoreU(v, d, out + i);
-    }
-    return least_lane(d, least);
+    return fine.min == 2 * first ? spread_pairs<false>(v, count, stride, out)
+                                 : spread_pairs<true>(v, count, stride, out);
 }
 
 } // namespace hsgm::matcher::host::HWY_NAMESPACE

@@ -267,6 +267,47 @@ void merge_row(const SumsRow& row, const std::uint8_t* valid, const CandidatePla
     }
 }
 
+// Lowers four keys by those whose low and high halves lie side by side, in falling order.
+HWY_INLINE void lower_four(hn::Vec<hn::FixedTag<std::uint16_t, 8>> halves, std::uint32_t* keys)
+{
+    const hn::FixedTag<std::uint32_t, 4> d;
+    const auto mine = hn::Reverse(d, hn::BitCast(d, halves));
+    hn::StoreU(hn::Min(hn::LoadU(d, keys), mine), d, keys);
+}
+
+// Eight candidates: sums and pixels of the numbers from `first` on, in order.
+HWY_INLINE void lower_eight(hn::Vec<hn::FixedTag<std::uint16_t, 8>> sums,
+                            hn::Vec<hn::FixedTag<std::uint16_t, 8>> pixels, int first,
+                            std::uint32_t* keys)
+{
+    const hn::FixedTag<std::uint16_t, 8> d;
+    const auto nobody =
+        hn::VecFromMask(d, hn::Eq(pixels, hn::Set(d, RightCandidates::kNobody)));
+    const auto number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::uint16_t>(first)));
+    const auto low = hn::Or(hn::Add(number, pixels), nobody);
+    const auto high = hn::Or(sums, nobody);
+    lower_four(hn::InterleaveLower(d, low, high), keys - 3);
+    lower_four(hn::InterleaveUpper(d, low, high), keys - 7);
+}
+
+// Whole vectors of candidates from the even number `begin` on; returns the first number left.
+int lower_keys(const CandidatePlanes& from, int begin, int end, int offset, std::uint32_t* keys)
+{
+    const hn::FixedTag<std::uint16_t, 8> d;
+    int j = begin;
+    for (; j + 16 <= end; j += 16, keys -= 16) {
+        const auto even_sums = hn::LoadU(d, from.sums + j / 2);
+        const auto odd_sums = hn::LoadU(d, from.sums + from.plane + j / 2);
+        const auto even_pixels = hn::LoadU(d, from.pixels + j / 2);
+        const auto odd_pixels = hn::LoadU(d, from.pixels + from.plane + j / 2);
+        lower_eight(hn::InterleaveLower(d, even_sums, odd_sums),
+                    hn::InterleaveLower(d, even_pixels, odd_pixels), j + offset, keys);
+        lower_eight(hn::InterleaveUpper(d, even_sums, odd_sums),
+                    hn::InterleaveUpper(d, even_pixels, odd_pixels), j + 8 + offset, keys - 8);
+    }
+    return j;
+}
+
 template <int kLanes>
 void merge_in_lanes(const SumsRow& row, const std::uint8_t* valid, const CandidatePlanes& left,
                     const CandidatePlanes& right)
@@ -299,6 +340,7 @@ namespace hsgm::matcher::host {
 HWY_EXPORT(winners);
 HWY_EXPORT(prior);
 HWY_EXPORT(merge);
+HWY_EXPORT(lower_keys);
 
 void find_winners(const SumsRow& row, Winner* out)
 {
@@ -325,6 +367,27 @@ void RightCandidates::clear(int cols, int stride)
 void RightCandidates::merge(const SumsRow& row, const std::uint8_t* valid)
 {
     HWY_DYNAMIC_DISPATCH(merge)(row, valid, left_, right_);
+}
+
+void RightCandidates::lower_keys(int begin, int end, int offset, std::uint32_t* keys) const
+{
+    const auto one = [&](int j) {
+        const auto at = static_cast<std::size_t>((j % 2 != 0 ? left_.plane : 0) + j / 2);
+        const std::uint32_t pixel = left_.pixels[at];
+        const auto low = static_cast<std::uint16_t>(j + offset + int(pixel));
+        if (pixel != kNobody) {
+            std::uint32_t& key = keys[-(j - begin)];
+            key = std::min(key, std::uint32_t{left_.sums[at]} << 16 | low);
+        }
+    };
+    int j = begin;
+    if (j % 2 != 0 && j < end) {
+        one(j++);
+    }
+    j = HWY_DYNAMIC_DISPATCH(lower_keys)(left_, j, end, offset, keys - (j - begin));
+    for (; j < end; ++j) {
+        one(j);
+    }
 }
 
 } // namespace hsgm::matcher::host

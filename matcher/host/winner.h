@@ -54,16 +54,12 @@ public:
     /// left-most pixel's stays, which has the lowest disparity.
     void merge(const SumsRow& row, const std::uint8_t* valid);
 
-    std::uint32_t sum(int number) const { return left_.sums[index(number)]; }
-    /// The left pixel, or kNobody.
-    std::uint16_t pixel(int number) const { return left_.pixels[index(number)]; }
+    /// Lowers right-view keys (docs/algorithm.md, section 5) by the candidates with the
+    /// numbers [begin, end): number j meets keys[-(j - begin)], and its disparity is
+    /// j + its pixel + `offset` above the least asked one.
+    void lower_keys(int begin, int end, int offset, std::uint32_t* keys) const;
 
 private:
-    std::size_t index(int number) const
-    {
-        return static_cast<std::size_t>((number % 2 != 0 ? left_.plane : 0) + number / 2);
-    }
-
     Buffer<std::uint16_t> sums_;
     Buffer<std::uint16_t> pixels_;
     CandidatePlanes left_;  ///< of the row's left half, then of all
