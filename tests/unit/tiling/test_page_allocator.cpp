@@ -1,7 +1,7 @@
 #include "tiling/image.h"
 #include "tiling/page_allocator.h"
 
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cstdint>
