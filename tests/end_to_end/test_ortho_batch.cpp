@@ -60,9 +60,8 @@ TEST_CASE("a folder of orthoimages is paired by place and view, and says what is
     fs::create_directory(archive);
     const std::string left = folder / "scene/ortho_left.tif";
     fs::copy(left, archive + "/a.tif");
-    gdal({"gdal_translate", "-q", "-nomd", folder / "scene/ortho_right.tif",
-          archive + "/b.tif"});
-    gdal({"gdal_translate", "-q", "-nomd", left, archive + "/blind.tif"});
+    gdal({"gdalwarp", "-q", "-nomd", folder / "scene/ortho_right.tif", archive + "/b.tif"});
+    gdal({"gdalwarp", "-q", "-nomd", left, archive + "/blind.tif"});
     gdal({"gdal_translate", "-q", "-a_ullr", "600000", "5300000", "600150", "5299850", left,
           archive + "/far.tif"});
     fs::copy(folder / "scene/left.tif", archive + "/raw.tif");
