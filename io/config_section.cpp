@@ -202,7 +202,8 @@ void ConfigSection::read_view(ImageSpec& spec)
     constexpr double kMostIncidence = 80;
     const auto azimuth = optional_number("azimuth_deg", -360, 360);
     const auto incidence = optional_number("incidence_deg", 0, kMostIncidence);
-    const std::vector<double> vector = numbers("view_vector", 2);
+    const std::vector<double> vector =
+        has("view_vector") ? numbers("view_vector", 2) : std::vector<double>{};
     if (azimuth.has_value() != incidence.has_value()) {
         fail(azimuth ? "azimuth_deg" : "incidence_deg",
              "says how the image was taken only together: give azimuth_deg and incidence_deg");

@@ -50,7 +50,8 @@ void read_dem(ConfigSection& section, SatelliteOptions& options)
 {
     const auto path = section.optional_path("reference_dem");
     const std::string vertical = section.text("reference_dem_vertical", "auto");
-    const auto above = section.numbers("above_dem_m", 2);
+    const auto above =
+        section.has("above_dem_m") ? section.numbers("above_dem_m", 2) : std::vector<double>{};
     if (path) {
         options.dem = ElevationSpec{*path, vertical == "auto" ? "" : vertical};
     } else if (vertical != "auto" || !above.empty()) {
