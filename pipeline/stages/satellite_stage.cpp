@@ -85,6 +85,18 @@ DsmSummary write_satellite_heights(const Job& job)
         {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
 }
 
+std::int64_t held_bytes(const Job& job)
+{
+    const PairGeometry& pair = *job.satellite->pair;
+    const auto bytes_of = [](const geometry::Lattice& lattice) {
+        return static_cast<std::int64_t>(lattice.values().size() * sizeof(double));
+    };
+    const auto& dem = job.satellite->search.dem;
+    return bytes_of(pair.frame.map) + bytes_of(pair.frame.left) + bytes_of(pair.frame.right) +
+           bytes_of(pair.ground.nodes()) +
+           (dem ? dem->posts().size().area() * std::int64_t{sizeof(float)} : 0);
+}
+
 std::int64_t satellite_bytes(const Job& job, int threads)
 {
     const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
