@@ -36,6 +36,10 @@ and of a raw satellite pair with RPCs:
   pair: {left: left.tif, right: right.tif}
   geometry: {kind: rpc}
   output: {folder: result}
+and of two orthoimages, which say how they were taken, on a DEM:
+  pair: {left: left.tif, right: right.tif}
+  geometry: {kind: ortho, reference_dem: dem.tif}
+  output: {folder: result}
 Paths are relative to the configuration file. docs/configuration.md explains every key.)";
 
 constexpr const char* kPlanHelp = R"(Examples:

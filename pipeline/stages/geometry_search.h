@@ -6,6 +6,8 @@
 #include "pipeline/geometry/pair_geometry.h"
 #include "pipeline/geometry/pointing.h"
 #include "pipeline/geometry/rpc_camera.h"
+#include "pipeline/stages/elevation_stage.h"
+#include "pipeline/stages/sensor_stage.h"
 
 #include <optional>
 #include <string>
@@ -23,6 +25,13 @@ struct SensorImage {
 struct PairGeometryOptions {
     /// Lowest and highest ground; absent: found from the images.
     std::optional<geometry::HeightSpan> heights;
+    /// Given: the images are orthoimages, made on this.
+    std::optional<OrthoBase> ortho;
+    /// The ground as it is known: the frame is laid along it, and heights are looked for near
+    /// it. Null: the frame is level.
+    std::shared_ptr<const geometry::ElevationGrid> dem;
+    /// Lowest and highest ground over the DEM; absent: found from the images.
+    std::optional<geometry::HeightSpan> above_dem;
     /// How the right image's pointing is mended; absent: it is taken as it is.
     std::optional<geometry::PointingModel> pointing = geometry::PointingModel::automatic;
     double largest_pointing_px = 50; ///< how far off it may be
@@ -31,6 +40,15 @@ struct PairGeometryOptions {
     std::string crs;                 ///< of the ground points; empty: the UTM zone
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid
 };
+
+/// The model of an image as these options take it.
+geometry::SensorModel open_sensor(const io::RasterSource& source, const io::ImageSpec& image,
+                                  const PairGeometryOptions& options);
+
+/// What both images may show, in degrees, with some room round it: where a DEM is asked for.
+/// Throws InputError where they have nothing in common.
+geometry::MapBox ground_box(const SensorImage& left, const SensorImage& right,
+                            const PairGeometryOptions& options);
 
 /// Finds a pair's geometry from its images:
 ///

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hsgm::pipeline {
 
@@ -40,15 +41,37 @@ DsmOptions dsm_options(const Job& job, const MapProjection& map)
     return options;
 }
 
+/// Reads the reference DEM where the images lie; what is to be said of it.
+std::string take_dem(Job& job)
+{
+    SatelliteOptions& options = *job.satellite;
+    if (!options.dem || options.search.dem) {
+        return "";
+    }
+    constexpr double kSpareDeg = 0.002; // some 200 m, and a tenth of the sides
+    geometry::MapBox box = ground_box({job.left, {}}, {job.right, {}}, options.search);
+    box = box.grown(kSpareDeg + std::max(box.width(), box.height()) / 10);
+    Elevation elevation = read_elevation(*options.dem, box);
+    options.search.dem = elevation.grid;
+    if (options.search.ortho) {
+        options.search.ortho->dem = elevation.grid;
+    }
+    return elevation.warning;
+}
+
 } // namespace
 
 void plan_satellite(Job& job)
 {
+    const std::string warning = take_dem(job);
     const std::string& stored = job.satellite->stored;
-    job.satellite->pair = std::make_shared<PairGeometry>(
-        stored.empty()
-            ? find_pair_geometry({job.left, {}}, {job.right, {}}, job.satellite->search)
-            : read_geometry(stored, job));
+    PairGeometry pair = stored.empty() ? find_pair_geometry({job.left, {}}, {job.right, {}},
+                                                            job.satellite->search)
+                                       : read_geometry(stored, job);
+    if (stored.empty() && !warning.empty()) {
+        pair.warnings.push_back(warning);
+    }
+    job.satellite->pair = std::make_shared<PairGeometry>(std::move(pair));
     job.disparity = job.satellite->pair->disparity;
 }
 
@@ -60,6 +83,18 @@ DsmSummary write_satellite_heights(const Job& job)
     return write_dsm(
         {o.disparity, o.confidence, &pair.ground, pair.frame.gsd_m}, dsm_options(job, map),
         {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
+}
+
+std::int64_t held_bytes(const Job& job)
+{
+    const PairGeometry& pair = *job.satellite->pair;
+    const auto bytes_of = [](const geometry::Lattice& lattice) {
+        return static_cast<std::int64_t>(lattice.values().size() * sizeof(double));
+    };
+    const auto& dem = job.satellite->search.dem;
+    return bytes_of(pair.frame.map) + bytes_of(pair.frame.left) + bytes_of(pair.frame.right) +
+           bytes_of(pair.ground.nodes()) +
+           (dem ? dem->posts().size().area() * std::int64_t{sizeof(float)} : 0);
 }
 
 std::int64_t satellite_bytes(const Job& job, int threads)

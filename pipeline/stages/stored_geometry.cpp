@@ -3,7 +3,6 @@
 #include "io/error.h"
 #include "io/pending_file.h"
 #include "pipeline/geometry/error.h"
-#include "pipeline/stages/camera_stage.h"
 
 #include <fmt/format.h>
 
@@ -33,14 +32,15 @@ std::string text_of(const std::string& path)
     return text.str();
 }
 
-void check_model(const io::ImageSpec& image, const geometry::RpcCamera& stored,
-                 const std::string& path)
+void check_model(const io::ImageSpec& image, const PairGeometryOptions& search,
+                 const geometry::SensorModel& stored, const std::string& path)
 {
     const io::RasterSource source(image);
-    if (!(open_camera(source, image.rpc).model() == stored.model())) {
-        throw io::InputError(fmt::format("{} is the geometry of other images: the RPC of {} is "
-                                         "not the one that it was found with",
-                                         path, source.description()));
+    if (!same_sensor(open_sensor(source, image, search), stored)) {
+        throw io::InputError(fmt::format(
+            "{} is the geometry of other images: {} of {} is not the one that it was found "
+            "with",
+            path, search.ortho ? "the map or view" : "the RPC", source.description()));
     }
 }
 
@@ -50,8 +50,8 @@ geometry::PairGeometry read_geometry(const std::string& path, const Job& job)
 {
     try {
         geometry::PairGeometry pair = geometry::pair_geometry_from_json(text_of(path));
-        check_model(job.left, pair.left, path);
-        check_model(job.right, pair.right, path);
+        check_model(job.left, job.satellite->search, pair.left, path);
+        check_model(job.right, job.satellite->search, pair.right, path);
         return pair;
     } catch (const geometry::GeometryError& error) {
         throw io::InputError(fmt::format("{}: {}", path, error.what()));
