@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <map>
 #include <memory>
@@ -113,6 +114,9 @@ void run(const Arguments& arguments)
     RunManner manner = manner_of(arguments, loaded);
     Job job = loaded.configuration.job;
     take_kept_geometry(job, manner);
+    if (job.satellite && job.satellite->stored.empty()) {
+        spdlog::info("finding the geometry of the pair");
+    }
     const PlannedJob planned = plan_job(job);
     if (arguments.dry_run) {
         PlanReport report;

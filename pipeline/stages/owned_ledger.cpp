@@ -5,6 +5,7 @@
 #include "pipeline/ledger/succession.h"
 #include "pipeline/run_log.h"
 #include "pipeline/stages/run_layout.h"
+#include "pipeline/stages/stage_progress.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -174,6 +175,7 @@ void OwnedLedger::take_over(const std::filesystem::path& path, const Manner& man
 void OwnedLedger::record(const std::string& stage, const tiling::Rect& whole,
                          const std::function<void()>& work) const
 {
+    spdlog::info("{}", words_of_stage(stage));
     ledger_->plan(stage, std::vector{whole});
     auto running = event(stage, whole, TileState::running);
     running.started_s = wall_clock_s();
