@@ -6,8 +6,8 @@
 #include "pipeline/stages/first_pass.h"
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/stages/refine_stage.h"
+#include "pipeline/stages/satellite_memory.h"
 #include "pipeline/stages/satellite_stage.h"
-#include "pipeline/stages/search_memory.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>

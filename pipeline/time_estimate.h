@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/stages/part_plan.h"
+#include "pipeline/stages/plan_parts.h"
 
 namespace hsgm::pipeline {
 

@@ -1,6 +1,6 @@
 #include "pipeline/commands/plan_report.h"
 
-#include "pipeline/stages/part_plan.h"
+#include "pipeline/stages/plan_parts.h"
 #include "pipeline/time_estimate.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "pipeline/stages/part_plan.h"
+#include "pipeline/stages/plan_parts.h"
 
 #include "pipeline/stages/first_pass.h"
 #include "tiling/shard.h"

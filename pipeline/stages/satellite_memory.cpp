@@ -1,4 +1,4 @@
-#include "pipeline/stages/search_memory.h"
+#include "pipeline/stages/satellite_memory.h"
 
 #include "pipeline/stages/sensor_view.h"
 
