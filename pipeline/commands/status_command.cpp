@@ -3,13 +3,17 @@
 #include "io/pending_file.h"
 #include "pipeline/stages/report_stage.h"
 #include "pipeline/stages/run_books.h"
+#include "pipeline/stages/stage_progress.h"
 #include "pipeline/stages/tile_stage.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -24,7 +28,8 @@ constexpr const char* kStatusHelp = R"(Examples:
   hsgm status results --json
 
 Reads the ledgers in DIR/ledger, also while a run is at work there, on this machine or
-another. Exit code 0 whatever the state is; --json tells it to scripts.)";
+another. Of a batch, whose runs lie in folders of DIR, a line for each. Exit code 0 whatever the
+state is; --json tells it to scripts.)";
 
 constexpr const char* kReportHelp = R"(Examples:
   hsgm report results
@@ -77,23 +82,33 @@ std::optional<double> seconds_left(const Totals& totals)
 }
 
 // The stage that a book's owner is in, and what went wrong last.
-std::string now_in(const Book& book)
+struct StageNow {
+    std::string name;
+    double seconds = 0; ///< since it began, by the clocks of two machines perhaps
+};
+
+StageNow now_in(const Book& book)
 {
-    std::string stage;
+    const double now_s =
+        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
+            .count();
+    StageNow now;
     for (const ledger::TileRow& row : book.contents.tiles) {
         if (row.state == ledger::TileState::running && book.at_work) {
-            stage = row.stage;
+            now = {row.stage, std::max(now_s - row.started_s, 0.0)};
         }
     }
-    return stage;
+    return now;
 }
 
 ordered_json book_json(const Book& book)
 {
+    const StageNow now = now_in(book);
     ordered_json json{{"name", book.name},
                       {"at_work", book.at_work},
                       {"process", book.holder},
-                      {"stage", now_in(book)}};
+                      {"stage", now.name},
+                      {"stage_seconds", std::round(now.seconds)}};
     if (book.shard) {
         const TileCounts counts = count_tiles(book);
         json["tiles"] = {{"all", counts.all},
@@ -164,8 +179,12 @@ void print_status(const ordered_json& status)
                                 number(part["tiles"]["all"]));
         }
         if (part["at_work"].get<bool>()) {
-            line += fmt::format(", {} ({})", part["stage"].get<std::string>(),
-                                part["process"].get<std::string>());
+            const std::string stage = part["stage"].get<std::string>();
+            line += stage.empty() || stage == kMatchStage
+                        ? fmt::format(" ({})", part["process"].get<std::string>())
+                        : fmt::format(", {} for {} s ({})", words_of_stage(stage),
+                                      number(part["stage_seconds"]),
+                                      part["process"].get<std::string>());
         }
         fmt::print("{}\n", line);
     }
@@ -174,6 +193,44 @@ void print_status(const ordered_json& status)
                    number(tile["row"]) + number(tile["rows"]) - 1, number(tile["col"]),
                    number(tile["col"]) + number(tile["cols"]) - 1,
                    tile["reason"].get<std::string>());
+    }
+}
+
+// The runs of a batch: folders of this one that have ledgers, by name.
+std::vector<std::filesystem::path> runs_below(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> runs;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+        if (entry.is_directory() && !RunLayout{entry.path()}.all_ledgers().empty()) {
+            runs.push_back(entry.path());
+        }
+    }
+    std::sort(runs.begin(), runs.end());
+    return runs;
+}
+
+void tell_of_batch(const std::vector<std::filesystem::path>& runs, bool json)
+{
+    ordered_json list = ordered_json::array();
+    for (const auto& run : runs) {
+        ordered_json status = status_json(read_books({run}));
+        status["run"] = run.filename().string();
+        if (!json) {
+            const ordered_json& tiles = status["tiles"];
+            fmt::print("{:<20} {:<9} {:>6} of {} tiles, {} failed{}\n",
+                       status["run"].get<std::string>(), status["state"].get<std::string>(),
+                       tiles["done"].get<int>(), tiles["all"].get<int>(),
+                       tiles["failed"].get<int>(),
+                       status["seconds_left"].is_null()
+                           ? ""
+                           : fmt::format(", {:.0f} s left for the tiles",
+                                         status["seconds_left"].get<double>()));
+        }
+        list.push_back(std::move(status));
+    }
+    if (json) {
+        fmt::print("{}\n", ordered_json{{"runs", list}}.dump(2));
     }
 }
 
@@ -191,7 +248,13 @@ CLI::App* add_status_command(CLI::App& app)
     command->add_option("DIR", arguments->folder, "output folder of a run")->required();
     command->add_flag("--json", arguments->json, "as JSON");
     command->callback([arguments] {
-        const auto status = status_json(read_books({arguments->folder}));
+        const RunLayout layout{arguments->folder};
+        const auto runs = runs_below(layout.root);
+        if (layout.all_ledgers().empty() && !runs.empty()) {
+            tell_of_batch(runs, arguments->json);
+            return;
+        }
+        const auto status = status_json(read_books(layout));
         if (arguments->json) {
             fmt::print("{}\n", status.dump(2));
         } else {

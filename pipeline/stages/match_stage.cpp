@@ -71,6 +71,7 @@ private:
     bool outputs_are_there() const;
     void check_room() const;
     std::string log_name() const;
+    void log_coarse_stages() const;
     void do_coarse();
     void do_tiles(Shard shard);
     void do_assemble();
@@ -106,6 +107,7 @@ RunResult Run::carry_out()
                             {"tile_size_px", planned_.budget.tile_size_px},
                             {"memory_estimate_bytes", planned_.budget.estimate_bytes},
                             {"resume", manner_.resume}});
+        log_coarse_stages();
     }
     if (does(RunStage::tiles)) {
         const int count = shard_count();
@@ -122,6 +124,23 @@ RunResult Run::carry_out()
                       {"tiles_failed", result_.failed.size()},
                       {"assembled", result_.summary.has_value()}});
     return std::move(result_);
+}
+
+// They were over before there was a log: a run that is refused leaves none.
+void Run::log_coarse_stages() const
+{
+    if (!does(RunStage::coarse)) {
+        return;
+    }
+    const ledger::Contents book = ledger::read_ledger(layout_.coarse_ledger());
+    for (const ledger::AttemptRow& attempt : book.attempts) {
+        if (attempt.token == book.owners.back().token) {
+            log_event("stage", {{"stage", attempt.stage},
+                                {"state", attempt.outcome},
+                                {"seconds", attempt.seconds},
+                                {"reason", attempt.reason}});
+        }
+    }
 }
 
 // One log for each part of a run, which later attempts go on with.

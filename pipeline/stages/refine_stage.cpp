@@ -4,6 +4,7 @@
 #include "matcher/reasons.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/height.h"
+#include "pipeline/stages/stage_progress.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_pipeline.h>
@@ -190,6 +191,7 @@ MatchSummary refine_and_write(const FirstPass& first_pass, const PreparedPair& p
     Writers writers(job, shape.left, geo);
     Pieces pieces(shape.left);
     MatchSummary summary;
+    StageProgress progress(words_of_stage("refine"), shape.left.area());
     const auto next = [&](tbb::flow_control& control) -> Rect {
         check_stop();
         const auto piece = pieces.next();
@@ -215,6 +217,7 @@ MatchSummary refine_and_write(const FirstPass& first_pass, const PreparedPair& p
     const auto write = [&](const std::shared_ptr<Piece>& piece) {
         writers.write(*piece);
         count(piece->refined, summary);
+        progress.advance(piece->rect.area());
     };
     tbb::parallel_pipeline(
         static_cast<std::size_t>(pieces_in_flight(tbb::this_task_arena::max_concurrency())),

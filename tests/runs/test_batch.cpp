@@ -74,6 +74,10 @@ TEST_CASE("a folder of pairs is worked through, each pair as a run of its own")
         CHECK(fs::exists(archive.at(std::string("results/") + name + "/logs/job.log")));
     }
     CHECK(archive.rasters("east") != archive.rasters("west"));
+    const Outcome status = run_hsgm({"status", archive.at("results")});
+    CHECK(status.code == 0);
+    CHECK_THAT(status.out, Contains("east") && Contains("north") && Contains("west") &&
+                               Contains("finished") && Contains("4 of 4 tiles, 0 failed"));
 }
 
 TEST_CASE("a pair that fails does not disturb the others, and is made up for later")

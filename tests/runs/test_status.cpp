@@ -89,6 +89,12 @@ TEST_CASE("a run's log has an object for every tile and stage")
     CHECK(count_events(lines, "begin") == 1);
     CHECK(count_events(lines, "end") == 1);
     CHECK(count_events(lines, "tile") == 16);
+    for (const char* stage : {"prepare", "coarse", "refine", "checksums"}) {
+        INFO(stage);
+        CHECK(std::count_if(lines.begin(), lines.end(), [&](const json& line) {
+                  return line.value("stage", "") == stage && line["seconds"] > 0;
+              }) == 1);
+    }
     for (const json& line : lines) {
         CHECK(line["time"].get<std::string>().ends_with("Z"));
         if (line.value("event", "") == "tile") {
