@@ -1,5 +1,6 @@
 #include "tests/catch.h"
 
+#include "matcher/profile.h"
 #include "tests/cuda/many_cases.h"
 #include "tests/reference/themes.h"
 
@@ -50,4 +51,34 @@ TEST_CASE("device and host agree on mode hsgm-paper")
 TEST_CASE("device and host agree on mode local")
 {
     compare_with_device(of_mode(Mode::local), 2'800'000, 50);
+}
+
+TEST_CASE("device and host agree on every cost")
+{
+    std::uint64_t first = 2'900'000;
+    for (const Cost cost : matcher::all_costs()) {
+        for (const int paths : {4, 8}) {
+            compare_with_device(of_cost(cost, paths, false), first, 10);
+            first += 1'000;
+        }
+    }
+}
+
+TEST_CASE("device and host agree on every profile")
+{
+    std::uint64_t first = 2'950'000;
+    for (const auto profile :
+         {matcher::Profile::satellite, matcher::Profile::aerial, matcher::Profile::close}) {
+        Theme theme;
+        theme.most_side_px = 80;
+        theme.most_count = 60;
+        theme.most_work = 400'000;
+        theme.vary = [profile](Random& random, Options& o) {
+            o = matcher::options_of(profile);
+            o.levels = random.between(2, 3);
+            o.window_px = random.one_of({16, 32, 64});
+        };
+        compare_with_device(theme, first, 5);
+        first += 1'000;
+    }
 }
