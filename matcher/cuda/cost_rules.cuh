@@ -55,17 +55,6 @@ struct TableCost {
     }
 };
 
-/// Hamming distance of the bits of touching pixels.
-struct PairsCost {
-    unsigned most;
-
-    __device__ unsigned operator()(const LongFeature& left, const LongFeature& low,
-                                   const LongFeature& high) const
-    {
-        return lesser(differing_bits(left, low, high), pair_of(most));
-    }
-};
-
 /// Two values in halves, and the least and largest of them within half a pixel; under 256.
 struct Samples {
     unsigned value;
@@ -88,8 +77,10 @@ __device__ __forceinline__ unsigned sampling_difference(const Samples& left,
     return kNone - greater;
 }
 
-/// Bits of touching pixels, and the difference of sampled gradients: pairs_bt.
-struct PairsGradientCost {
+/// Bits of touching pixels, so many quarters each, and the difference of sampled gradients:
+/// pairs_bt; and pairs5x5, whose features have no gradients.
+struct PairsCost {
+    unsigned scale;
     unsigned most;
 
     // Of two pixels, in both halves.
@@ -103,7 +94,7 @@ struct PairsGradientCost {
     {
         const unsigned g = sampling_difference(gradients(left, left), gradients(low, high));
         const unsigned sum =
-            3 * differing_bits(left, low, high) + 2 * g + (g >> 1 & 0x000F000FU);
+            scale * differing_bits(left, low, high) + 2 * g + (g >> 1 & 0x000F000FU);
         return lesser(sum >> 2 & 0x00FF00FFU, pair_of(most));
     }
 };

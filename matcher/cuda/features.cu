@@ -160,9 +160,11 @@ CostRule cost_rule(Cost cost, const std::uint8_t* table)
         return rule;
     case Cost::pairs5x5:
         rule.kind = CostKind::pairs;
+        rule.scale = 4;
         return rule;
     case Cost::pairs_bt:
-        rule.kind = CostKind::pairs_gradient;
+        rule.kind = CostKind::pairs;
+        rule.scale = 3;
         return rule;
     case Cost::birchfield_tomasi:
         rule.kind = CostKind::block;

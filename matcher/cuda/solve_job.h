@@ -15,18 +15,17 @@ using LongFeature = uint4;
 constexpr unsigned kValidFeature = 0x80000000U;
 
 enum class CostKind {
-    census,         ///< bits that differ
-    census_tone,    ///< bits of `x` that differ, and the difference of tones in `y`
-    table,          ///< of tones, in `x`
-    pairs,          ///< bits of long features that differ
-    pairs_gradient, ///< the same, and the difference of sampled gradients in `z`
-    block,          ///< of sampled tones and gradients, over the pixels round the left one
+    census,      ///< bits that differ
+    census_tone, ///< bits of `x` that differ, and the difference of tones in `y`
+    table,       ///< of tones, in `x`
+    pairs,       ///< bits of long features that differ, and sampled gradients in `z`
+    block,       ///< of sampled tones and gradients, over the pixels round the left one
 };
 
 /// How the features of two valid pixels become a cost.
 struct CostRule {
     CostKind kind = CostKind::census;
-    int scale = 1;                       ///< of a differing bit
+    int scale = 1;                       ///< of a differing bit; for pairs in quarters
     int most = 0;                        ///< C_max
     const std::uint8_t* table = nullptr; ///< by left and right tone
 };

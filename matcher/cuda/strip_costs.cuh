@@ -28,9 +28,8 @@ public:
         case CostKind::census_tone:
             return fill_with<false>(CensusToneCost{most}, job_.left, job_.right);
         case CostKind::pairs:
-            return fill_with<false>(PairsCost{most}, job_.long_left, job_.long_right);
-        case CostKind::pairs_gradient:
-            return fill_with<false>(PairsGradientCost{most}, job_.long_left, job_.long_right);
+            return fill_with<false>(PairsCost{static_cast<unsigned>(rule.scale), most},
+                                    job_.long_left, job_.long_right);
         case CostKind::census:
         case CostKind::block: // has kernels of its own
             break;

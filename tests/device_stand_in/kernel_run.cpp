@@ -174,6 +174,7 @@ void Run::fail(const std::string& sentence)
     if (failure_.empty()) {
         failure_ = sentence + " (block " + std::to_string(place.block.x) + ", thread " +
                    std::to_string(place.thread.x) + ")";
+        release(&end_); // for whoever reads the sentence
     }
 }
 
