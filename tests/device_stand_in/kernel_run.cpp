@@ -162,6 +162,11 @@ std::string Run::all_blocks()
             std::erase(resident_, &block);
         }
     }
+    for (Block* block : resident_) { // after a failure: threads that did not come to their end
+        for (const auto& thread : block->threads) {
+            thread->fiber.release(&end_);
+        }
+    }
     acquire(&end_);
     for (Block* block : resident_) {
         finish(*block);
@@ -174,7 +179,6 @@ void Run::fail(const std::string& sentence)
     if (failure_.empty()) {
         failure_ = sentence + " (block " + std::to_string(place.block.x) + ", thread " +
                    std::to_string(place.thread.x) + ")";
-        release(&end_); // for whoever reads the sentence
     }
 }
 
