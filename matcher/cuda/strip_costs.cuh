@@ -46,7 +46,7 @@ private:
     // Pixels of a row that a thread takes at once: as many as its registers hold. Two of them
     // share a coarse pixel: strips begin at even columns.
     template <typename F>
-    static constexpr int kPixels = sizeof(F) > sizeof(Feature) ? 2 : 4;
+    static constexpr int kPixels = sizeof(F) > sizeof(Feature) || sizeof(Cell) > 1 ? 2 : 4;
 
     // Left and right pixels whose costs make up a word: those of the low and the high half.
     template <typename F>
