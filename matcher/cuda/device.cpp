@@ -82,13 +82,9 @@ Devices find_devices()
 
 std::string refusal(const Matcher& matcher, const DeviceInfo&)
 {
-    if (matcher.plan().windowed_levels() == 0) {
-        return "a match in one piece (mode sgm, or one level) is left to the processor";
-    }
-    const Cost cost = matcher.options().cost;
-    return has_cost_rule(cost)
+    return matcher.plan().windowed_levels() > 0
                ? ""
-               : "cost " + std::string(name(cost)) + " is left to the processor";
+               : "a match in one piece (mode sgm, or one level) is left to the processor";
 }
 
 std::int64_t shared_bytes(const Matcher& matcher)

@@ -1,6 +1,6 @@
 #include "matcher/cuda/features.h"
 
-#include "matcher/cuda/device.cuh"
+#include "matcher/cuda/feature_pixels.cuh"
 
 #include <stdexcept>
 
@@ -8,27 +8,7 @@ namespace hsgm::matcher::cuda {
 
 namespace features {
 
-constexpr int kThreads = 256;
 constexpr int kTextureRadius = 3;
-
-// Pixel number `i` of an area.
-struct Pixel {
-    int row;
-    int col;
-};
-__device__ Pixel pixel_of(const Area& area, std::size_t i)
-{
-    const auto cols = static_cast<std::size_t>(area.cols);
-    return {area.row + static_cast<int>(i / cols), area.col + static_cast<int>(i % cols)};
-}
-__device__ std::size_t first_pixel()
-{
-    return std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
-}
-__device__ std::size_t pixel_step()
-{
-    return std::size_t{gridDim.x} * blockDim.x;
-}
 
 __global__ void tones(Plane<const std::uint16_t> pixels, Tone tone, Plane<std::uint8_t> result)
 {
@@ -78,23 +58,6 @@ struct CensusShape {
     bool with_tone; ///< the tone beside the bits, in `y`
 };
 
-// Bits in order, 32 in `x`, then those in `y`.
-struct Bits {
-    unsigned low = 0;
-    unsigned high = 0;
-    int count = 0;
-
-    __device__ void add(bool bit)
-    {
-        if (count < 32) {
-            low |= (bit ? 1U : 0U) << count;
-        } else {
-            high |= (bit ? 1U : 0U) << (count - 32);
-        }
-        ++count;
-    }
-};
-
 __device__ void add_neighbour(Bits& bits, const CensusShape& shape, int neighbour, int centre)
 {
     const bool valid = is_valid(static_cast<std::uint16_t>(neighbour));
@@ -136,12 +99,6 @@ __global__ void tone_features(Plane<const std::uint16_t> pixels, Tone tone,
     }
 }
 
-int blocks_for(const Area& area)
-{
-    return static_cast<int>(
-        least_of<std::size_t>((area.pixels() + kThreads - 1) / kThreads, 2048));
-}
-
 } // namespace features
 
 cudaError_t compute_tones(Plane<const std::uint16_t> pixels, Tone tone,
@@ -170,6 +127,9 @@ cudaError_t compute_features(Plane<const std::uint16_t> pixels, Area image, Cost
         return launch(features::tone_features, blocks, features::kThreads, 0, stream, pixels,
                       tone, result);
     }
+    if (cost == Cost::birchfield_tomasi) {
+        return compute_samples(pixels, image, tone, result, stream);
+    }
     const CostTraits of_cost = traits(cost);
     features::CensusShape shape{of_cost.radius_rows, of_cost.radius_cols, false, 0, false};
     shape.ternary = cost == Cost::ternary5x5;
@@ -177,24 +137,6 @@ cudaError_t compute_features(Plane<const std::uint16_t> pixels, Area image, Cost
     shape.with_tone = cost == Cost::census_ad;
     return launch(features::census, blocks, features::kThreads, 0, stream, pixels, image, shape,
                   tone, result);
-}
-
-bool has_cost_rule(Cost cost)
-{
-    switch (cost) {
-    case Cost::census5x5:
-    case Cost::census7x7:
-    case Cost::census9x7:
-    case Cost::ternary5x5:
-    case Cost::census_ad:
-    case Cost::hmi:
-        return true;
-    case Cost::pairs5x5:
-    case Cost::pairs_bt:
-    case Cost::birchfield_tomasi:
-        break;
-    }
-    return false;
 }
 
 CostRule cost_rule(Cost cost, const std::uint8_t* table)
@@ -217,9 +159,16 @@ CostRule cost_rule(Cost cost, const std::uint8_t* table)
         rule.table = table;
         return rule;
     case Cost::pairs5x5:
+        rule.kind = CostKind::pairs;
+        rule.scale = 4;
+        return rule;
     case Cost::pairs_bt:
+        rule.kind = CostKind::pairs;
+        rule.scale = 3;
+        return rule;
     case Cost::birchfield_tomasi:
-        break;
+        rule.kind = CostKind::block;
+        return rule;
     }
     throw std::logic_error("no rule for this cost on CUDA devices");
 }

@@ -1,5 +1,6 @@
 #include "matcher/cuda/level_memory.h"
 
+#include "matcher/cuda/features.h"
 #include "matcher/host/directions.h"
 
 #include <algorithm>
@@ -84,7 +85,9 @@ std::vector<WindowLaunch<Cell>> window_launches(const Options& options,
 {
     std::vector<WindowLaunch<Cell>> launches;
     int over = 0;
-    for (const auto& kernel : window_kernels(Cell{})) {
+    const auto kernels =
+        block_radius(options.cost) > 0 ? block_kernels(Cell{}) : window_kernels(Cell{});
+    for (const auto& kernel : kernels) {
         const int up_to = kernel.most_count(count);
         // Windows have the level's range without pruning, and any range up to it with it.
         const bool wanted = up_to >= count || (options.prune && up_to > over);
@@ -119,9 +122,17 @@ TileMemory<Cell> lay_out_tile(Arena& arena, const Matcher& matcher, const Device
         m.right_pixels = plane<std::uint16_t>(arena, s.right_image);
         m.tone = plane<std::uint8_t>(arena, s.left_image);
         m.low_texture = plane<std::uint8_t>(arena, s.aggregation);
-        m.left = plane<Feature>(arena, s.aggregation);
-        m.right = plane<Feature>(arena, intersect(right_reach(s.aggregation, plan.ranges[k]),
-                                                  rect_of(plan.right_sizes[k])));
+        const Rect left = intersect(expand(s.aggregation, block_radius(options.cost)),
+                                    rect_of(plan.left_sizes[k]));
+        const Rect right =
+            intersect(right_reach(left, plan.ranges[k]), rect_of(plan.right_sizes[k]));
+        if (has_long_features(options.cost)) {
+            m.long_left = plane<LongFeature>(arena, left);
+            m.long_right = plane<LongFeature>(arena, right);
+        } else {
+            m.left = plane<Feature>(arena, left);
+            m.right = plane<Feature>(arena, right);
+        }
         m.windows_area = Area(s.windows);
         m.window_count = tiling::ceil_div(s.windows.rows, options.window_px) *
                          tiling::ceil_div(s.windows.cols, options.window_px);

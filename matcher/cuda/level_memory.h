@@ -24,8 +24,10 @@ struct LevelMemory {
     Plane<std::uint16_t> right_pixels;
     Plane<std::uint8_t> tone;
     Plane<std::uint8_t> low_texture;
-    Plane<Feature> left;
+    Plane<Feature> left; ///< of costs with long features, the next two instead
     Plane<Feature> right;
+    Plane<LongFeature> long_left;
+    Plane<LongFeature> long_right;
     Area windows_area;
     Window* windows = nullptr;
     int window_count = 0;

@@ -135,8 +135,14 @@ private:
                             : (line * Group::kLanes + Group::lane()) * 2 * Group::kWords;
     }
 
+    // Lanes that only lend a hand stay away from the line that they stand in for: another
+    // group of the warp parks it, and votes and shuffles put no memory in order.
     __device__ void resume(const Cell* from)
     {
+        if (!active_) {
+            state_.begin();
+            return;
+        }
         state_.resume(from + slot());
         if (frame_.is_padded()) {
             state_.pad();

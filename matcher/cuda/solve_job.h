@@ -9,18 +9,23 @@ namespace hsgm::matcher::cuda {
 /// What a matching cost compares of a pixel. The highest bit of `y` says that the pixel is
 /// valid; 63 bits are left for the cost.
 using Feature = uint2;
+/// The same of costs that compare more: 64 bits in `x` and `y`, samples in `z`; the highest bit
+/// of `w` says that the pixel is valid.
+using LongFeature = uint4;
 constexpr unsigned kValidFeature = 0x80000000U;
 
 enum class CostKind {
     census,      ///< bits that differ
     census_tone, ///< bits of `x` that differ, and the difference of tones in `y`
     table,       ///< of tones, in `x`
+    pairs,       ///< bits of long features that differ, and sampled gradients in `z`
+    block,       ///< of sampled tones and gradients, over the pixels round the left one
 };
 
 /// How the features of two valid pixels become a cost.
 struct CostRule {
     CostKind kind = CostKind::census;
-    int scale = 1;                       ///< of a differing bit
+    int scale = 1;                       ///< of a differing bit; for pairs in quarters
     int most = 0;                        ///< C_max
     const std::uint8_t* table = nullptr; ///< by left and right tone
 };
@@ -71,8 +76,10 @@ struct SolveJob {
     Plane<const std::uint16_t> right_pixels;
     Plane<const std::uint8_t> tone;
     Plane<const std::uint8_t> low_texture;
-    Plane<const Feature> left;
+    Plane<const Feature> left; ///< of costs with long features, the next two instead
     Plane<const Feature> right;
+    Plane<const LongFeature> long_left;
+    Plane<const LongFeature> long_right;
     CostRule cost;
     Directions directions;
     int halo_px = 0;

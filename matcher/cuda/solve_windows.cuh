@@ -1,8 +1,11 @@
 #pragma once
 
+#include "matcher/cuda/block_costs.cuh"
 #include "matcher/cuda/line_follower.cuh"
 #include "matcher/cuda/strip_costs.cuh"
 #include "matcher/cuda/winners.cuh"
+
+#include <type_traits>
 
 namespace hsgm::matcher::cuda {
 
@@ -15,10 +18,12 @@ constexpr int kMostThreads = 384;
 /// their state at the top of every strip in device memory; then strips are solved from top to
 /// bottom, with the paths of all directions: up from the state that the strip below left, down
 /// from where the strip above ended, along by themselves.
-template <typename Cell, typename Group>
+/// Costs over blocks have kernels of their own: beside the others they would find too few
+/// registers.
+template <typename Cell, typename Group, bool kBlocks>
 class WindowSolver {
     using Follower = LineFollower<Cell, Group>;
-    using Costs = StripCosts<Cell, Group>;
+    using Costs = std::conditional_t<kBlocks, BlockCosts<Cell, Group>, StripCosts<Cell, Group>>;
 
 public:
     __device__ explicit WindowSolver(const WindowFrame<Cell>& frame)
@@ -240,7 +245,7 @@ __device__ WindowFrame<Cell> frame_of(const SolveJob<Cell>& job)
 }
 
 /// Solves the windows of a job: each block takes one after the other.
-template <typename Cell, typename Group>
+template <typename Cell, typename Group, bool kBlocks = false>
 __global__ void __launch_bounds__(kMostThreads, 1)
     solve_windows(const __grid_constant__ SolveJob<Cell> job)
 {
@@ -266,7 +271,7 @@ __global__ void __launch_bounds__(kMostThreads, 1)
         frame.window = window;
         frame.first_col = most_of(window.core.col - job.halo_px, 0);
         frame.end_col = least_of(window.core.col_end() + job.halo_px, job.image.cols);
-        WindowSolver<Cell, Group>(frame).solve();
+        WindowSolver<Cell, Group, kBlocks>(frame).solve();
     }
 }
 

@@ -25,6 +25,9 @@ struct WindowKernel {
 /// By rising width.
 std::span<const WindowKernel<std::uint8_t>> window_kernels(std::uint8_t);
 std::span<const WindowKernel<std::uint16_t>> window_kernels(std::uint16_t);
+/// The same for costs of CostKind::block.
+std::span<const WindowKernel<std::uint8_t>> block_kernels(std::uint8_t);
+std::span<const WindowKernel<std::uint16_t>> block_kernels(std::uint16_t);
 
 /// What decides where a block keeps what.
 struct StripCase {

@@ -14,6 +14,8 @@ namespace {
 
 using tiling::Rect;
 
+constexpr const char* kWhat = "starting work on the device";
+
 // The most that any of the cores takes.
 template <typename Bytes>
 std::int64_t most(std::span<const Rect> cores, Bytes bytes)
@@ -130,6 +132,8 @@ SolveJob<Cell> TileMatcher<Cell>::job_of(const TileMemory<Cell>& memory, int lev
     job.low_texture = read_only(m.low_texture);
     job.left = read_only(m.left);
     job.right = read_only(m.right);
+    job.long_left = read_only(m.long_left);
+    job.long_right = read_only(m.long_right);
     job.cost = cost_rule(options.cost, shared.hmi);
     job.directions = directions_of(options);
     job.halo_px = options.halo_px;
@@ -154,6 +158,31 @@ SolveJob<Cell> TileMatcher<Cell>::job_of(const TileMemory<Cell>& memory, int lev
 }
 
 template <typename Cell>
+void TileMatcher<Cell>::make_features(const SolveJob<Cell>& job, const LevelMemory<Cell>& m,
+                                      const Area& right_image)
+{
+    const PairTraits& pair = matcher_.pair();
+    const Cost cost = matcher_.options().cost;
+    const cudaStream_t stream = stream_.get();
+    check(compute_tones(job.left_pixels, pair.left_tone, m.tone, stream), kWhat);
+    check(compute_low_texture(job.left_pixels, job.tone, m.low_texture, stream), kWhat);
+    if (has_long_features(cost)) {
+        check(compute_long_features(job.left_pixels, job.image, cost, pair.left_tone,
+                                    m.long_left, stream),
+              kWhat);
+        check(compute_long_features(job.right_pixels, right_image, cost, pair.right_tone,
+                                    m.long_right, stream),
+              kWhat);
+        return;
+    }
+    check(compute_features(job.left_pixels, job.image, cost, pair.left_tone, m.left, stream),
+          kWhat);
+    check(
+        compute_features(job.right_pixels, right_image, cost, pair.right_tone, m.right, stream),
+        kWhat);
+}
+
+template <typename Cell>
 void TileMatcher<Cell>::solve_level(const TileMemory<Cell>& memory, int level)
 {
     const auto k = static_cast<std::size_t>(level);
@@ -162,17 +191,7 @@ void TileMatcher<Cell>::solve_level(const TileMemory<Cell>& memory, int level)
     const tiling::DisparityRange range = matcher_.plan().ranges[k];
     const cudaStream_t stream = stream_.get();
     SolveJob<Cell> job = job_of(memory, level);
-    const PairTraits& pair = matcher_.pair();
-    const char* const what = "starting work on the device";
-    check(compute_tones(job.left_pixels, pair.left_tone, m.tone, stream), what);
-    check(compute_low_texture(job.left_pixels, job.tone, m.low_texture, stream), what);
-    check(compute_features(job.left_pixels, job.image, options.cost, pair.left_tone, m.left,
-                           stream),
-          what);
-    const Area right_image(rect_of(matcher_.plan().right_sizes[k]));
-    check(compute_features(job.right_pixels, right_image, options.cost, pair.right_tone,
-                           m.right, stream),
-          what);
+    make_features(job, m, Area(rect_of(matcher_.plan().right_sizes[k])));
     RangeJob ranges;
     ranges.area = m.windows_area;
     ranges.window_px = options.window_px;
@@ -185,14 +204,14 @@ void TileMatcher<Cell>::solve_level(const TileMemory<Cell>& memory, int level)
         ranges.coarse_cols = job.coarser.cols;
         ranges.coarse_winner = {job.coarser.winner, job.coarser.area};
     }
-    check(find_window_ranges(ranges, stream), what);
+    check(find_window_ranges(ranges, stream), kWhat);
     if (job.finest) {
         check(cudaMemsetAsync(memory.tile.keys, 0xFF,
                               memory.tile.keys_area.pixels() * sizeof(std::uint32_t), stream),
-              what);
+              kWhat);
     }
     const auto launches = window_launches<Cell>(options, device_, range.count());
-    check(cudaMemsetAsync(m.counters, 0, launches.size() * sizeof(int), stream), what);
+    check(cudaMemsetAsync(m.counters, 0, launches.size() * sizeof(int), stream), kWhat);
     for (std::size_t i = 0; i < launches.size(); ++i) {
         const WindowLaunch<Cell>& l = launches[i];
         job.next_window = m.counters + i;
@@ -201,7 +220,7 @@ void TileMatcher<Cell>::solve_level(const TileMemory<Cell>& memory, int level)
         job.strips = l.strips;
         check(launch(l.kernel.kernel, std::min(l.blocks, m.window_count), device_.block_threads,
                      l.strips.bytes, stream, job),
-              what);
+              kWhat);
     }
 }
 

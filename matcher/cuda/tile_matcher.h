@@ -16,6 +16,8 @@ public:
 
 private:
     void upload(const TileMemory<Cell>& memory, std::span<const LevelImages> images);
+    void make_features(const SolveJob<Cell>& job, const LevelMemory<Cell>& memory,
+                       const Area& right_image);
     void solve_level(const TileMemory<Cell>& memory, int level);
     SolveJob<Cell> job_of(const TileMemory<Cell>& memory, int level) const;
     TileMatch download(const TileMemory<Cell>& memory, const tiling::Rect& core);

@@ -31,8 +31,7 @@ TEST_CASE("device and host agree on thousands of cases")
 TEST_CASE("device and host agree on every cost, with every number of paths and width")
 {
     std::uint64_t first = 30'000'000;
-    for (const Cost cost : {Cost::census5x5, Cost::census7x7, Cost::census9x7, Cost::ternary5x5,
-                            Cost::census_ad, Cost::hmi}) {
+    for (const Cost cost : matcher::all_costs()) {
         for (const int paths : {4, 5, 8, 16}) {
             for (const bool wide : {false, true}) {
                 cuda_test::compare_with_device(of_cost(cost, paths, wide), first, 12);

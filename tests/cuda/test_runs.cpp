@@ -1,8 +1,12 @@
 #include "tests/catch.h"
 
+#include "pipeline/stages/match_stage.h"
+#include "tests/cuda/shared_out.h"
 #include "tests/device_stand_in/control.h"
 #include "tests/end_to_end/program.h"
 #include "tests/seam/run_files.h"
+
+#include "matcher/profile.h"
 
 #include <filesystem>
 
@@ -12,9 +16,11 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-pipeline::Job town_job(const TemporaryFolder& folder)
+pipeline::Job town_job(const TemporaryFolder& folder,
+                       matcher::Profile profile = matcher::Profile::satellite)
 {
     pipeline::Job job = write_pair(render(city({150, 170}, 5)), Storage::uint16, folder.path());
+    job.matcher = matcher::options_of(profile);
     job.matcher.window_px = 32;
     job.run.tile_size_px = 64;
     job.run.threads = 2;
@@ -33,15 +39,50 @@ tests::Outcome run_with_device(const std::vector<std::string>& arguments)
 TEST_CASE("a run whose tiles are shared out to processor and device gives the same files")
 {
     const TemporaryFolder folder;
+    const auto profile = GENERATE(matcher::Profile::satellite, matcher::Profile::close);
+    INFO(name(profile));
+    pipeline::Job job = town_job(folder, profile);
+    const auto files_of = [&](const std::string& device, cuda_test::SharedOut& shared) {
+        const auto out = folder.path() / device;
+        std::filesystem::create_directory(out);
+        set_outputs(job, out);
+        job.run.device = device;
+        pipeline::RunManner manner;
+        manner.adapt_worker = shared.adapter();
+        const auto result = pipeline::run_job(pipeline::plan_job(job), manner, {});
+        CHECK(result.failed.empty());
+        return tests::snapshot(out.string());
+    };
+    cuda_test::SharedOut on_processor;
+    const auto expected = files_of("cpu", on_processor);
+    CHECK(expected.size() == 5);
+    CHECK(on_processor.tiles("cpu") == 9);
+    CHECK(on_processor.tiles("cuda") == 0);
+
+    // Both kinds take tiles, and what a device takes it matches: nothing is left to the
+    // processor in silence.
+    const auto before = stand_in::launches();
+    cuda_test::SharedOut shared;
+    CHECK((files_of("auto", shared) == expected));
+    CHECK(shared.tiles("cpu") >= 2);
+    CHECK(shared.tiles("cuda") >= 2);
+    CHECK(shared.tiles("cpu") + shared.tiles("cuda") == 9);
+    const auto launches = stand_in::launches() - before;
+    CHECK(launches >= shared.tiles("cuda"));
+    CHECK(launches % shared.tiles("cuda") == 0);
+
+    cuda_test::SharedOut on_device;
+    CHECK((files_of("cuda", on_device) == expected));
+    CHECK(on_device.tiles("cuda") == 9);
+}
+
+TEST_CASE("a run that loses its device half way gives the same files")
+{
+    const TemporaryFolder folder;
     pipeline::Job job = town_job(folder);
     job.run.device = "cpu";
     const auto on_processor = run(job);
-    const auto before = stand_in::launches();
-    job.run.device = "auto";
-    CHECK(difference(on_processor, run(job)) == "");
-    CHECK(stand_in::launches() > before);
     job.run.device = "cuda";
-    CHECK(difference(on_processor, run(job)) == "");
     job.run.order = tiling::TileOrder::shuffled;
     stand_in::set_faults({-1, 40});
     CHECK(difference(on_processor, run(job)) == "");
@@ -92,7 +133,7 @@ TEST_CASE("a benchmark measures the device beside the processor")
                                           "--disparities",
                                           "16",
                                           "--cost",
-                                          "census5x5,pairs5x5",
+                                          "census5x5,pairs_bt",
                                           "--instructions",
                                           "auto",
                                           "--threads",
@@ -108,6 +149,6 @@ TEST_CASE("a benchmark measures the device beside the processor")
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     CHECK_THAT(outcome.out, Contains("hsgm census5x5, cuda:0, not pruned") &&
-                                Contains("stand-in 0, windows alone") &&
-                                Contains("cost pairs5x5 is left to the processor"));
+                                Contains("hsgm pairs_bt, cuda:0, not pruned") &&
+                                Contains("stand-in 0, windows alone"));
 }

@@ -1,6 +1,8 @@
 #include "tests/catch.h"
 
+#include "matcher/cuda/features.h"
 #include "matcher/cuda/level_memory.h"
+#include "matcher/profile.h"
 
 #include <cstdio>
 
@@ -51,11 +53,14 @@ void add_level(Traffic& t, const Options& o, const DeviceInfo& device, int level
     const auto launch = window_launches<std::uint8_t>(unpruned, device, count).back();
     const StripLayout& s = launch.strips;
     const double strips = ceil_of(o.window_px, s.rows);
-    const double lines = o.window_px + 2 * (o.window_px + o.halo_px); // of three directions
+    // Directions that go up: one straight, and with 8 paths two slanting ones.
+    const double slanting = o.paths == 8 ? 2 * (o.window_px + o.halo_px) : 0;
+    const double lines = o.window_px + slanting;
     t.checkpoints += windows * lines * 2 * s.words * 2 * strips;
     const double pixels = double(side) * side;
-    const double made = 2 * 2 + 2 * 8 + 1 + 1;
-    const double read = 2 * 8 + 1 + 1;
+    const double feature = has_long_features(o.cost) ? sizeof(LongFeature) : sizeof(Feature);
+    const double made = 2 * 2 + 2 * feature + 1 + 1;
+    const double read = 2 * feature + 1 + 1;
     const double both_passes = 2 * double(o.window_px + o.halo_px) / o.window_px;
     t.features += pixels * (made + read * both_passes);
     // What the coarser level left for this one; the coarsest was solved by the processor.
@@ -71,9 +76,8 @@ void add_level(Traffic& t, const Options& o, const DeviceInfo& device, int level
     t.rest += pixels * 2 * 2; // images
 }
 
-Traffic traffic(const DeviceInfo& device)
+Traffic traffic(const DeviceInfo& device, const Options& options = {})
 {
-    const Options options;
     Traffic t;
     add_level(t, options, device, 0);
     add_level(t, options, device, 1);
@@ -101,6 +105,15 @@ TEST_CASE("a match moves at most 2.5 bytes of device memory a pixel and disparit
                     traffic(device).sum());
         CHECK(launch.strips.rows > 0);
     }
+}
+
+TEST_CASE("profile close moves at most 2.5 bytes, too")
+{
+    const Traffic t = traffic(device_with(227), options_of(Profile::close));
+    std::printf("H100: %.2f bytes: checkpoints %.2f, features %.2f, coarse %.2f, rest %.2f\n",
+                t.sum(), t.checkpoints, t.features, t.coarse, t.rest);
+    CHECK(t.sum() <= 2.5);
+    CHECK(t.sum() > 1);
 }
 
 TEST_CASE("shared memory stays within what each processor has")

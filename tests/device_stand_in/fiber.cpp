@@ -110,6 +110,16 @@ void Fiber::resume()
     running = nullptr;
 }
 
+void Fiber::release([[maybe_unused]] void* object)
+{
+#if defined(HSGM_THREAD_SANITIZER)
+    void* const own_fiber = __tsan_get_current_fiber();
+    __tsan_switch_to_fiber(sanitizer_fiber_, __tsan_switch_to_fiber_no_sync);
+    stand_in::release(object);
+    __tsan_switch_to_fiber(own_fiber, __tsan_switch_to_fiber_no_sync);
+#endif
+}
+
 void Fiber::pause()
 {
     Switch::leave_fiber(*running);

@@ -19,6 +19,9 @@ public:
     void prepare(void (*entry)(void*), void* argument);
     /// Runs it until it pauses or ends. Called from outside all fibers.
     void resume();
+    /// Tells the thread sanitizer that all that the fiber has done comes before an acquire of
+    /// `object`, where the fiber will not say so itself. Called from outside all fibers.
+    void release(void* object);
     /// Goes back to whoever resumed the running fiber.
     static void pause();
 

@@ -162,6 +162,11 @@ std::string Run::all_blocks()
             std::erase(resident_, &block);
         }
     }
+    for (Block* block : resident_) { // after a failure: threads that did not come to their end
+        for (const auto& thread : block->threads) {
+            thread->fiber.release(&end_);
+        }
+    }
     acquire(&end_);
     for (Block* block : resident_) {
         finish(*block);

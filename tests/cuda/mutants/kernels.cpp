@@ -21,5 +21,13 @@ std::span<const WindowKernel<std::uint16_t>> window_kernels(std::uint16_t)
 {
     return {};
 }
+std::span<const WindowKernel<std::uint8_t>> block_kernels(std::uint8_t)
+{
+    return {};
+}
+std::span<const WindowKernel<std::uint16_t>> block_kernels(std::uint16_t)
+{
+    return {};
+}
 
 } // namespace hsgm::matcher::cuda
