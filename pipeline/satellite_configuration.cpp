@@ -70,6 +70,9 @@ std::string first_given(const std::vector<std::string>& keys, const SatelliteOpt
         {"largest_pointing_px", a.largest_pointing_px != b.largest_pointing_px},
         {"epipolar_gsd_m", a.gsd_m != b.gsd_m},
         {"stored", !given.stored.empty()},
+        {"pointing_from", !given.pointing_from.empty()},
+        {"bounds", a.region.bounds.has_value()},
+        {"region", !a.region.file.empty()},
         {"gsd_m", given.dsm_gsd_m != defaults.dsm_gsd_m},
         {"crs", a.crs != b.crs},
         {"vertical", a.vertical != b.vertical}};
@@ -103,6 +106,8 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     options.dsm_gsd_m =
         dsm.number_or("gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
     options.stored = geometry.optional_path("stored").value_or("");
+    options.pointing_from = geometry.optional_path("pointing_from").value_or("");
+    options.search.region = read_region(dsm);
     const std::string crs = dsm.text("crs", "auto");
     options.search.crs = crs == "auto" ? "" : crs;
     const std::string vertical = dsm.text("vertical", "ellipsoid");
@@ -110,21 +115,28 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     if (kind != "rpc") {
         constexpr const char* kWhy = "is for geometry kind rpc only: leave it out";
         refuse(geometry,
-               first_given(
-                   {"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m", "stored"},
-                   options),
+               first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
+                            "stored", "pointing_from"},
+                           options),
                kWhy);
-        refuse(dsm, first_given({"gsd_m", "crs", "vertical"}, options), kWhy);
+        refuse(dsm, first_given({"gsd_m", "crs", "vertical", "bounds", "region"}, options),
+               kWhy);
         return std::nullopt;
     }
     if (!options.stored.empty()) {
         constexpr const char* kWhy = "is what geometry.stored says already: leave one of the "
                                      "two out";
         refuse(geometry,
-               first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m"},
+               first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
+                            "pointing_from"},
                            options),
                kWhy);
         refuse(dsm, first_given({"crs", "vertical"}, options), kWhy);
+    }
+    if (!options.pointing_from.empty()) {
+        refuse(geometry, first_given({"pointing", "largest_pointing_px"}, options),
+               "is what geometry.pointing_from says already: leave one of the two out");
+        options.search.pointing.reset();
     }
     check_map(dsm, options.search);
     return options;

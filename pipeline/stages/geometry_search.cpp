@@ -4,7 +4,9 @@
 #include "pipeline/geometry/disparity_bounds.h"
 #include "pipeline/geometry/error.h"
 #include "pipeline/geometry/tie_points.h"
+#include "pipeline/stages/given_heights.h"
 #include "pipeline/stages/quick_match.h"
+#include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/resampled_source.h"
 #include "pipeline/stages/sensor_view.h"
 
@@ -55,6 +57,9 @@ constexpr int kLeastConfidence = 160;
 /// (docs/geometry.md has the measurements).
 constexpr double kFrameStep = 0.75;
 
+/// What the frame shows round a region of interest, for the matcher's sake.
+constexpr double kRegionMarginPx = 100;
+
 /// A frame with both images drawn into it.
 struct DrawnPair {
     EpipolarFrame frame;
@@ -71,13 +76,19 @@ public:
     }
 
     PairGeometry run();
+    /// Where the ground lies by the images alone.
+    HeightSpan run_for_heights();
+    /// What to add to a refusal where much of an image has no value; else empty.
+    std::string word_on_masks() const;
 
 private:
+    void begin();
     MapProjection find_map() const;
     HeightSpan possible_heights() const;
-    geometry::Polygon region() const;
+    geometry::Polygon region(const MapProjection& output, double margin_m) const;
     FrameOptions frame_options(double level_m, HeightSpan heights, double gsd_m) const;
-    EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer) const;
+    EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer,
+                           geometry::Polygon region = {}) const;
     DrawnPair draw_reduced(double level_m, HeightSpan heights, int coarser = 1) const;
     void find_rough_pointing();
     void find_heights();
@@ -120,13 +131,19 @@ MapProjection Search::find_map() const
     return MapProjection::automatic(middle->longitude_deg, middle->latitude_deg);
 }
 
-geometry::Polygon Search::region() const
+/// Convex and wider than what is wanted by `margin_m`; empty: everything.
+geometry::Polygon Search::region(const MapProjection& output, double margin_m) const
 {
-    geometry::Polygon region;
-    for (const geometry::MapPoint& corner : options_.region_deg) {
-        region.push_back(map_.forward({corner.x, corner.y, level_m_}));
+    if (options_.region.empty()) {
+        return {};
     }
-    return region;
+    geometry::Polygon corners;
+    for (const geometry::Polygon& ring : region_deg(options_.region, output)) {
+        for (const geometry::MapPoint& corner : ring) {
+            corners.push_back(map_.forward({corner.x, corner.y, level_m_}));
+        }
+    }
+    return convex_hull(std::move(corners), margin_m);
 }
 
 FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gsd_m) const
@@ -135,14 +152,15 @@ FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gs
     options.gsd_m = gsd_m;
     options.below_m = std::min(heights.low_m - level_m, -1.0);
     options.above_m = std::max(heights.high_m - level_m, 1.0);
-    options.region = region();
     return options;
 }
 
-EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer) const
+EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer,
+                               geometry::Polygon region) const
 {
     FrameOptions how = frame_options(level_m, heights, options_.gsd_m);
     how.finer = finer;
+    how.region = std::move(region);
     return geometry::make_epipolar_frame(RpcGroundCamera(left_.camera(), map_), left_.size(),
                                          RpcGroundCamera(right_.camera(), map_), right_.size(),
                                          ReferenceSurface(level_m), how);
@@ -182,8 +200,10 @@ void Search::find_rough_pointing()
 {
     const int coarser = feature_reduction() / reduction_;
     const DrawnPair pair = draw_reduced(level_m_, heights_, coarser);
-    const TieGate gate{(heights_.low_m - level_m_) * pair.frame.px_per_m - 2,
-                       (heights_.high_m - level_m_) * pair.frame.px_per_m + 2, 0,
+    // Given heights may be too narrow: look beside them, to be able to say so.
+    const double beside_m = options_.heights ? heights_.high_m - heights_.low_m : 0;
+    const TieGate gate{(heights_.low_m - beside_m - level_m_) * pair.frame.px_per_m - 2,
+                       (heights_.high_m + beside_m - level_m_) * pair.frame.px_per_m + 2, 0,
                        options_.largest_pointing_px / feature_reduction() + 1};
     const auto points =
         geometry::match_features({0, 0, pair.left}, {0, 0, pair.right}, gate, kCoarseFeatures);
@@ -204,6 +224,9 @@ void Search::find_rough_pointing()
         rough_ = rough;
         rough_.shift_px *= reduction_;
         rough_.correction = correction;
+    }
+    if (options_.heights) {
+        warn_of_heights(*options_.heights, agreeing, pair.frame, level_m_, warnings_);
     }
     const auto bounds = geometry::bounds_of(agreeing);
     tie_heights_ = {level_m_ + bounds->min_px / pair.frame.px_per_m,
@@ -305,13 +328,17 @@ PairGeometry Search::finish()
 {
     const RpcGroundCamera left(left_.camera(), map_);
     const RpcGroundCamera right(right_.camera(), map_);
-    EpipolarFrame frame = frame_at(level_m_, heights_, kFrameStep);
-    const tiling::DisparityRange disparity{
-        static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
-        static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
     const MapProjection output =
         options_.crs.empty() ? MapProjection::from_text(map_.text(), options_.vertical)
                              : MapProjection::from_text(options_.crs, options_.vertical);
+    EpipolarFrame frame = frame_at(level_m_, heights_, kFrameStep);
+    if (!options_.region.empty()) {
+        frame = frame_at(level_m_, heights_, kFrameStep,
+                         region(output, kRegionMarginPx * frame.gsd_m));
+    }
+    const tiling::DisparityRange disparity{
+        static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
+        static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
     geometry::GroundLattice ground(
         frame, left, right, disparity.min, disparity.max,
         [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); });
@@ -328,7 +355,7 @@ PairGeometry Search::finish()
             warnings_};
 }
 
-PairGeometry Search::run()
+void Search::begin()
 {
     const geometry::Overlap overlap = geometry::find_overlap(
         RpcGroundCamera(left_.camera(), map_), left_.size(),
@@ -344,6 +371,11 @@ PairGeometry Search::run()
     if (!options_.heights) {
         find_heights();
     }
+}
+
+PairGeometry Search::run()
+{
+    begin();
     level_m_ = std::round((heights_.low_m + heights_.high_m) / 2);
     if (options_.pointing) {
         find_pointing();
@@ -351,16 +383,46 @@ PairGeometry Search::run()
     return finish();
 }
 
+std::string Search::word_on_masks() const
+{
+    constexpr double kMuchShare = 0.8;
+    if (std::min(left_.valid_share(), right_.valid_share()) > kMuchShare) {
+        return "";
+    }
+    return fmt::format(
+        "; {:.0f} % of the left image's and {:.0f} % of the right image's pixels "
+        "are valid, the others nodata or masked",
+        100 * left_.valid_share(), 100 * right_.valid_share());
+}
+
+HeightSpan Search::run_for_heights()
+{
+    begin();
+    return heights_;
+}
+
 } // namespace
 
 geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
                                           const PairGeometryOptions& options)
 {
+    std::string word_on_masks;
     try {
-        return Search(left, right, options).run();
+        Search search(left, right, options);
+        try {
+            return search.run();
+        } catch (const geometry::GeometryError&) {
+            word_on_masks = search.word_on_masks();
+            throw;
+        }
     } catch (const geometry::GeometryError& error) {
+        PairGeometryOptions without = options;
+        without.heights.reset();
         throw io::InputError(
-            fmt::format("{} and {}: {}", left.image.path, right.image.path, error.what()));
+            fmt::format("{} and {}: {}{}{}", left.image.path, right.image.path, error.what(),
+                        word_on_masks, word_on_heights(options.heights, [&] {
+                            return Search(left, right, without).run_for_heights();
+                        })));
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }

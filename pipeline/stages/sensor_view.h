@@ -24,6 +24,8 @@ public:
     void reduce(int factor);
     const tiling::Image<double>& reduced() const { return reduced_; }
     geometry::RpcCamera reduced_camera() const;
+    /// Of the reduced copy's pixels, how many have a value; 1 before there is one.
+    double valid_share() const { return valid_share_; }
 
 private:
     SensorView(const SensorImage& sensor, const io::RasterSource& source);
@@ -32,6 +34,7 @@ private:
     tiling::Size size_;
     geometry::RpcCamera camera_;
     int factor_ = 1;
+    double valid_share_ = 1;
     tiling::Image<double> reduced_;
 };
 

@@ -33,6 +33,23 @@ std::string text_of(const std::string& path)
     return text.str();
 }
 
+geometry::ImageCorrection correction_of(const io::ImageSpec& image,
+                                        const geometry::PairGeometry& stored,
+                                        const std::string& path)
+{
+    const io::RasterSource source(image);
+    const geometry::RpcModel model = open_camera(source, image.rpc).model();
+    for (const geometry::RpcCamera* camera : {&stored.left, &stored.right}) {
+        if (camera->model() == model) {
+            return camera->correction();
+        }
+    }
+    throw io::InputError(
+        fmt::format("geometry.pointing_from: {} has no corrections for {}: the "
+                    "RPC of neither of its images is the same",
+                    path, source.description()));
+}
+
 void check_model(const io::ImageSpec& image, const geometry::RpcCamera& stored,
                  const std::string& path)
 {
@@ -53,6 +70,17 @@ geometry::PairGeometry read_geometry(const std::string& path, const Job& job)
         check_model(job.left, pair.left, path);
         check_model(job.right, pair.right, path);
         return pair;
+    } catch (const geometry::GeometryError& error) {
+        throw io::InputError(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+std::pair<geometry::ImageCorrection, geometry::ImageCorrection>
+read_corrections(const std::string& path, const Job& job)
+{
+    try {
+        const auto stored = geometry::pair_geometry_from_json(text_of(path));
+        return {correction_of(job.left, stored, path), correction_of(job.right, stored, path)};
     } catch (const geometry::GeometryError& error) {
         throw io::InputError(fmt::format("{}: {}", path, error.what()));
     }
