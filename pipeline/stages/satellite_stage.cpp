@@ -3,6 +3,7 @@
 #include "io/hillshade.h"
 #include "io/raster_source.h"
 #include "pipeline/dsm/dsm_grid.h"
+#include "pipeline/error.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/geometry/pair_geometry.h"
 #include "pipeline/stages/region_stage.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace hsgm::pipeline {
@@ -30,12 +32,40 @@ double cell_m(const Job& job)
     return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.images_gsd_m);
 }
 
+/// The program itself and its libraries.
+constexpr std::int64_t kProgramBytes = std::int64_t{64} << 20;
+
+std::int64_t search_bytes(const Job& job)
+{
+    return job.satellite->stored.empty()
+               ? geometry_search_bytes(io::RasterSource(job.left).size(),
+                                       io::RasterSource(job.right).size())
+               : 0;
+}
+
+/// The search comes before the plan, which needs what it finds.
+void require_memory_for_search(const Job& job)
+{
+    constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+    const std::int64_t needed = kProgramBytes + search_bytes(job);
+    const auto allowed = static_cast<std::int64_t>(
+        job.run.memory_bytes.value_or(std::numeric_limits<std::int64_t>::max()));
+    if (needed > allowed) {
+        throw BudgetError(fmt::format(
+            "to find the geometry of {} and {} takes {} MiB of memory, but the run may take {} "
+            "MiB: allow more with --memory, or name the geometry.json of an earlier run as "
+            "geometry.stored",
+            job.left.path, job.right.path, needed / kMiB, allowed / kMiB));
+    }
+}
+
 } // namespace
 
 void plan_satellite(Job& job)
 {
     SatelliteOptions& satellite = *job.satellite;
     if (satellite.stored.empty()) {
+        require_memory_for_search(job);
         SensorImage left{job.left, {}};
         SensorImage right{job.right, {}};
         if (!satellite.pointing_from.empty()) {
@@ -101,8 +131,9 @@ std::int64_t satellite_bytes(const Job& job, int threads)
     const double side =
         std::hypot(frame.size.rows, frame.size.cols) * frame.gsd_m / cell_m(job);
     const int cells = static_cast<int>(std::min(side, 1e9)) + 1;
-    return std::max(dsm_bytes(frame.gsd_m, cell_m(job), threads),
-                    job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells}));
+    return std::max({dsm_bytes(frame.gsd_m, cell_m(job), threads),
+                     job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells}),
+                     search_bytes(job)});
 }
 
 std::int64_t satellite_output_bytes(const Job& job)
