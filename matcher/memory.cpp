@@ -144,4 +144,19 @@ std::int64_t waiting_tile_bytes(const Matcher& matcher, int tile_size_px)
     return std::max(image_bytes(matcher.support(core)), result_bytes(core, plan));
 }
 
+std::int64_t hmi_table_bytes(const Matcher& matcher)
+{
+    // The level on its own, solved whole as a pair of level 0, once more copied by its match.
+    const PairShape& shape = matcher.pair().shape;
+    const LevelPlan plan = plan_levels(shape, Options{});
+    PairTraits level = matcher.pair();
+    level.shape = {plan.left_sizes.back(), plan.right_sizes.back(), plan.ranges.back()};
+    Options options = matcher.options();
+    options.mode = Mode::sgm;
+    const Rect whole = rect_of(level.shape.left);
+    const Matcher solver(level, options);
+    const std::int64_t images = 2 * 2 * (whole.area() + level.shape.right.area());
+    return solver.coarse_bytes() + result_bytes(whole, solver.plan()) + images;
+}
+
 } // namespace hsgm::matcher

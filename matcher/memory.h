@@ -14,4 +14,7 @@ std::int64_t coarse_kept_bytes(const Matcher& matcher);
 /// or its result. While it is matched: Matcher::tile_bytes.
 std::int64_t waiting_tile_bytes(const Matcher& matcher, int tile_size_px);
 
+/// Upper bound of what `solve_hmi_table` takes for such a pair, with its two images.
+std::int64_t hmi_table_bytes(const Matcher& matcher);
+
 } // namespace hsgm::matcher

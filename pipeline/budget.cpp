@@ -7,6 +7,7 @@
 #include "pipeline/stages/prepare_stage.h"
 #include "pipeline/stages/refine_stage.h"
 #include "pipeline/stages/satellite_stage.h"
+#include "pipeline/stages/search_memory.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>
@@ -89,6 +90,20 @@ std::int64_t heights_bytes(const Job& job, const matcher::PairShape& shape, int 
     return job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes(shape.left);
 }
 
+// What comes before the tiles: finding the geometry of a raw pair, streaming both images, and
+// learning the table of cost hmi.
+std::int64_t preparing_bytes(const matcher::Matcher& matcher, const Job& job)
+{
+    std::int64_t bytes = kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
+    if (job.satellite && job.satellite->stored.empty()) {
+        bytes = std::max(bytes, search_bytes(*job.satellite->pair));
+    }
+    if (job.matcher.cost == matcher::Cost::hmi) {
+        bytes = std::max(bytes, matcher::hmi_table_bytes(matcher));
+    }
+    return bytes;
+}
+
 std::int64_t output_bytes(const Job& job, const matcher::PairShape& shape)
 {
     const int floats =
@@ -124,8 +139,7 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.threads = job.run.threads > 0 ? job.run.threads : tbb::info::default_concurrency();
     budget.memory_bytes = static_cast<std::int64_t>(
         job.run.memory_bytes.value_or(available_memory_bytes() / 5 * 4));
-    budget.prepare_bytes =
-        kBaseBytes + kStripBytes + static_cast<std::int64_t>(gdal_cache_bytes());
+    budget.prepare_bytes = kBaseBytes + preparing_bytes(matcher, job);
     budget.coarse_bytes = kBaseBytes + matcher.coarse_bytes();
     budget.refine_bytes =
         kBaseBytes + std::max(refine_bytes(shape, job.matcher, budget.threads),

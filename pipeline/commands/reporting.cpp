@@ -1,6 +1,7 @@
 #include "pipeline/commands/reporting.h"
 
 #include "matcher/reasons.h"
+#include "pipeline/commands/plan_report.h"
 #include "pipeline/run_log.h"
 #include "pipeline/stages/satellite_record.h"
 
@@ -19,84 +20,6 @@ namespace {
 double mebi(std::int64_t bytes)
 {
     return static_cast<double>(bytes) / (1 << 20);
-}
-
-nlohmann::ordered_json levels_json(const matcher::LevelPlan& levels)
-{
-    auto list = nlohmann::ordered_json::array();
-    for (std::size_t k = 0; k < levels.ranges.size(); ++k) {
-        list.push_back({{"level", k},
-                        {"rows", levels.left_sizes[k].rows},
-                        {"cols", levels.left_sizes[k].cols},
-                        {"disparity_min", levels.ranges[k].min},
-                        {"disparity_max", levels.ranges[k].max}});
-    }
-    return list;
-}
-
-nlohmann::ordered_json devices_json(const DevicePlan& plan)
-{
-    auto list = nlohmann::ordered_json::array();
-    if (plan.cpu) {
-        list.push_back({{"device", "cpu"}});
-    }
-    for (const PlannedDevice& device : plan.cuda) {
-        list.push_back({{"device", fmt::format("cuda:{}", device.info.number)},
-                        {"name", device.info.name},
-                        {"streams", device.streams},
-                        {"memory_bytes", device.bytes}});
-    }
-    return list;
-}
-
-nlohmann::ordered_json plan_json(const PlannedJob& planned)
-{
-    const Budget& b = planned.budget;
-    nlohmann::ordered_json json;
-    json["mode"] = name(planned.job.matcher.mode);
-    json["cost"] = name(planned.job.matcher.cost);
-    json["levels"] = levels_json(planned.levels);
-    json["tile_size_px"] = b.tile_size_px;
-    json["tiles"] = b.tiles;
-    json["tiles_in_flight"] = b.tiles_in_flight;
-    json["threads"] = b.threads;
-    json["devices"] = devices_json(planned.devices);
-    json["memory_bytes"] = {{"allowed", b.memory_bytes},  {"estimate", b.estimate_bytes},
-                            {"prepare", b.prepare_bytes}, {"coarse", b.coarse_bytes},
-                            {"tiles", b.tiles_bytes},     {"refine", b.refine_bytes}};
-    json["disk_bytes"] = {{"scratch", b.scratch_disk_bytes}, {"outputs", b.output_disk_bytes}};
-    return json;
-}
-
-std::string tile_text(const Budget& budget)
-{
-    if (budget.tile_size_px == 0) {
-        return "untiled";
-    }
-    return fmt::format("{} of {} px, {} in flight", budget.tiles, budget.tile_size_px,
-                       budget.tiles_in_flight);
-}
-
-void print_table(const PlannedJob& planned)
-{
-    const Budget& b = planned.budget;
-    fmt::print("mode      {}, {}\n", name(planned.job.matcher.mode),
-               name(planned.job.matcher.cost));
-    for (std::size_t k = 0; k < planned.levels.ranges.size(); ++k) {
-        fmt::print("level {:<3} {} x {} px, disparities {}..{}\n", k,
-                   planned.levels.left_sizes[k].cols, planned.levels.left_sizes[k].rows,
-                   planned.levels.ranges[k].min, planned.levels.ranges[k].max);
-    }
-    fmt::print("tiles     {}\n", tile_text(b));
-    fmt::print("threads   {}\n", b.threads);
-    fmt::print("devices   {}\n", planned.devices.text());
-    fmt::print(
-        "memory    {:.0f} MiB at most, of {:.0f} allowed (prepare {:.0f}, coarse {:.0f}, "
-        "tiles {:.0f}, refine {:.0f})\n",
-        mebi(b.estimate_bytes), mebi(b.memory_bytes), mebi(b.prepare_bytes),
-        mebi(b.coarse_bytes), mebi(b.tiles_bytes), mebi(b.refine_bytes));
-    fmt::print("disk      {:.0f} MiB scratch, at most {:.0f} MiB results\n",
-               mebi(b.scratch_disk_bytes), mebi(b.output_disk_bytes));
 }
 
 } // namespace
@@ -149,15 +72,6 @@ void log_summary(const MatchSummary& summary, const PlannedJob& planned)
                      grid.cell,
                      100.0 * static_cast<double>(summary.dsm->cells_with_value) /
                          static_cast<double>(grid.size.area()));
-    }
-}
-
-void print_plan(const PlannedJob& planned, bool json)
-{
-    if (json) {
-        fmt::print("{}\n", plan_json(planned).dump(2));
-    } else {
-        print_table(planned);
     }
 }
 

@@ -12,9 +12,6 @@ void log_plan(const PlannedJob& planned);
 /// What came of it: completeness, and how many pixels carry each reason.
 void log_summary(const MatchSummary& summary, const PlannedJob& planned);
 
-/// The plan on standard output, as a table or as JSON.
-void print_plan(const PlannedJob& planned, bool json);
-
 /// Shows the tiles done, pace and time left: a bar on a terminal, a plain line for every tenth
 /// elsewhere.
 class ProgressLog {

@@ -1,5 +1,6 @@
 #include "pipeline/commands/knobs.h"
 #include "pipeline/commands/match_command.h"
+#include "pipeline/commands/plan_report.h"
 #include "pipeline/commands/reporting.h"
 
 #include "io/error.h"
@@ -46,9 +47,12 @@ Paths are relative to the configuration file. docs/configuration.md explains eve
 constexpr const char* kPlanHelp = R"(Examples:
   hsgm plan configs/demo.yaml
   hsgm plan city.yaml --memory 2GiB --json
+  hsgm plan city.yaml --shards 16
 
-Opens the inputs and tells levels, tiles, memory and disk of the run. Reads no pixels, but of raw
-pairs, whose geometry must be found first.)";
+Opens the inputs and tells levels, tiles, memory, disk and time of the run, and with --shards what
+each process of a run shared out like that does and takes. Reads no pixels, but of raw pairs,
+whose geometry must be found first. The time is a guess from a short measurement on this machine, and the one
+thing that differs from call to call: --no-time leaves it out.)";
 
 struct Arguments {
     std::string config;
@@ -59,7 +63,6 @@ struct Arguments {
     bool restart = false;
     bool take_over = false;
     bool dry_run = false;
-    bool json = false;
     Knobs knobs;
 };
 
@@ -149,7 +152,11 @@ void run(const Arguments& arguments)
     take_kept_geometry(job, manner);
     const PlannedJob planned = plan_job(job);
     if (arguments.dry_run) {
-        print_plan(planned, false);
+        PlanReport report;
+        if (manner.shard) {
+            report.shards = manner.shard->count;
+        }
+        print_plan(planned, report);
         return;
     }
     log_plan(planned);
@@ -206,9 +213,15 @@ CLI::App* add_plan_command(CLI::App& app)
     CLI::App* command = app.add_subcommand("plan", "Tell what a run would do and take");
     command->footer(kPlanHelp);
     const auto arguments = add_arguments(*command);
-    command->add_flag("--json", arguments->json, "as JSON");
-    command->callback([arguments] {
-        print_plan(plan_job(load(*arguments).configuration.job), arguments->json);
+    const auto report = std::make_shared<PlanReport>();
+    command->add_flag("--json", report->json, "as JSON");
+    command
+        ->add_option("--shards", report->shards,
+                     "also what each part of a run with so many shards would do and take")
+        ->check(CLI::Range(1, 100000));
+    command->add_flag("--no-time{false}", report->time, "without the time that it may take");
+    command->callback([arguments, report] {
+        print_plan(plan_job(load(*arguments).configuration.job), *report);
     });
     return command;
 }

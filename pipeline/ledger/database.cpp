@@ -6,8 +6,10 @@ namespace hsgm::ledger {
 
 namespace {
 
-// Readers take moments; a network file system may take its time.
-constexpr int kBusyTimeoutMs = 30'000;
+// Readers take moments, and so do commits; a network file system may take its time. Who only
+// looks can do without (read_ledger), and does not wait as long.
+constexpr int kWriterWaitsMs = 30'000;
+constexpr int kReaderWaitsMs = 2'000;
 
 bool is_damage(int code)
 {
@@ -44,7 +46,7 @@ Database::Database(const std::filesystem::path& path, Access access) : path_(pat
         if (code != SQLITE_OK) {
             fail(code);
         }
-        sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
+        sqlite3_busy_timeout(handle_, access == Access::read ? kReaderWaitsMs : kWriterWaitsMs);
         execute(settings_of(access));
     } catch (...) {
         sqlite3_close(handle_);
@@ -65,6 +67,11 @@ void Database::fail(int code) const
     if (is_damage(kind)) {
         throw DamagedError("The ledger " + path_.string() +
                            " is damaged (SQLite says: " + words + ").");
+    }
+    if (kind == SQLITE_BUSY) {
+        throw BusyError("The ledger " + path_.string() +
+                        " is kept locked by another process (SQLite says: " + words +
+                        "); look for one that hangs.");
     }
     const std::string advice = kind == SQLITE_FULL
                                    ? "; make room on that disk and resume the run."

@@ -16,6 +16,11 @@ class DamagedError : public io::StorageError {
     using StorageError::StorageError;
 };
 
+/// Another process keeps the ledger locked for longer than anybody should.
+class BusyError : public io::StorageError {
+    using StorageError::StorageError;
+};
+
 /// One SQLite file. Not thread-safe; the file may be read by others meanwhile. Uses a rollback
 /// journal, because a write-ahead log does not work across hosts, and waits for the disk.
 class Database {
@@ -26,7 +31,8 @@ public:
         read      ///< only looks; still rolls back what a killed writer left half done
     };
 
-    /// Throws StorageError where the file cannot be opened, DamagedError where it is none.
+    /// Throws StorageError where the file cannot be opened, DamagedError where it is none, and
+    /// BusyError, as all the rest, where another process keeps it locked.
     Database(const std::filesystem::path& path, Access access);
     ~Database();
     Database(const Database&) = delete;

@@ -1,6 +1,7 @@
 #include "pipeline/ledger/ledger.h"
 
 #include "pipeline/ledger/layout_private.h"
+#include "pipeline/ledger/succession.h"
 
 #include <algorithm>
 #include <tuple>
@@ -77,7 +78,8 @@ Owner Ledger::take(Owner owner, bool new_part)
                    "SELECT coalesce(max(token), 0), coalesce(max(part), 0) FROM owners");
     last.step();
     owner.token = last.integer(0) + 1;
-    owner.part = static_cast<int>(last.integer(1)) + (new_part ? 1 : 0);
+    const auto last_part = static_cast<int>(last.integer(1));
+    owner.part = new_part ? std::max(last_part + 1, owner.part) : last_part;
     last.step();
     Statement put(database_, "INSERT INTO owners VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
     put.bind(owner.token).bind(std::int64_t{owner.part}).bind(owner.host).bind(owner.pid);
@@ -142,7 +144,8 @@ void Ledger::require_token()
 {
     Statement last(database_, "SELECT coalesce(max(token), 0) FROM owners");
     last.step();
-    if (last.integer(0) > token_ && token_ > 0) {
+    const bool succeeded = std::filesystem::exists(successor_of(path()));
+    if (token_ > 0 && (last.integer(0) > token_ || succeeded)) {
         throw TakenOverError("Another process took over the ledger " + path().string() +
                              "; what this one did since is not recorded, and nothing is lost.");
     }

@@ -39,7 +39,8 @@ public:
     /// Makes the caller its owner: `owner.token` is set one above the last, and commits of
     /// earlier owners throw TakenOverError from then on. Tiles that were running when the last
     /// one ended are pending again, their deaths counted. With `new_part` the owner gets a
-    /// scratch part of its own, because the last one may yet write to its part.
+    /// scratch part of its own, because the last one may yet write to its part: at least
+    /// `owner.part`.
     Owner take(Owner owner, bool new_part);
     std::vector<Owner> owners() const;
 
@@ -51,7 +52,8 @@ public:
     /// them is pending again.)
     void plan(const std::string& stage, std::span<const tiling::Rect> tiles);
 
-    /// Records changes, all at once. Throws TakenOverError.
+    /// Records changes, all at once. Throws TakenOverError, also where the ledger has a
+    /// successor (succession.h).
     void commit(std::span<const TileEvent> events);
 
     const std::filesystem::path& path() const { return database_.path(); }
@@ -75,8 +77,8 @@ struct Contents {
     std::vector<AttemptRow> attempts;
 };
 
-/// Reads a ledger, also while its owner writes. Throws as the constructor of Ledger does, and
-/// StorageError where there is none.
+/// Reads a ledger, also while its owner writes, or was frozen in the midst of that. Throws as
+/// the constructor of Ledger does, and StorageError where there is none.
 Contents read_ledger(const std::filesystem::path& path);
 
 } // namespace hsgm::ledger

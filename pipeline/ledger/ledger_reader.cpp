@@ -1,5 +1,8 @@
 #include "pipeline/ledger/layout_private.h"
 #include "pipeline/ledger/ledger.h"
+#include "pipeline/ledger/succession.h"
+
+#include <stdlib.h>
 
 #include <array>
 #include <stdexcept>
@@ -100,7 +103,9 @@ std::vector<TileRow> read_tiles(Database& database, const std::string& stage)
     return tiles;
 }
 
-Contents read_ledger(const std::filesystem::path& path)
+namespace {
+
+Contents read_contents(const std::filesystem::path& path)
 {
     Database database(path, Database::Access::read);
     check_layout(database);
@@ -115,6 +120,45 @@ Contents read_ledger(const std::filesystem::path& path)
     contents.tiles = read_tiles(database, "");
     contents.attempts = read_attempts(database);
     return contents;
+}
+
+/// A folder for a copy that is read and forgotten.
+class PassingFolder {
+public:
+    PassingFolder()
+    {
+        std::string name =
+            (std::filesystem::temp_directory_path() / "hsgm-ledger-XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr) {
+            throw io::StorageError("Cannot make a temporary folder " + name + ".");
+        }
+        path_ = name;
+    }
+    ~PassingFolder()
+    {
+        std::error_code none;
+        std::filesystem::remove_all(path_, none);
+    }
+    PassingFolder(const PassingFolder&) = delete;
+    PassingFolder& operator=(const PassingFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+} // namespace
+
+Contents read_ledger(const std::filesystem::path& path)
+{
+    try {
+        return read_contents(path);
+    } catch (const BusyError&) {
+        const PassingFolder folder;
+        const auto copy = folder.path() / path.filename();
+        copy_ledger(path, copy);
+        return read_contents(copy);
+    }
 }
 
 } // namespace hsgm::ledger

@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "pipeline/error.h"
+#include "pipeline/ledger/succession.h"
 #include "pipeline/run_log.h"
 #include "pipeline/stages/run_layout.h"
 
@@ -48,6 +49,19 @@ ledger::Owner this_process()
     owner.program = "hsgm " HSGM_VERSION;
     owner.started_s = wall_clock_s();
     return owner;
+}
+
+std::string words_of(const ledger::Owner& owner)
+{
+    return fmt::format("process {} on {}", owner.pid, owner.host);
+}
+
+[[noreturn]] void refuse_held(const std::filesystem::path& ledger)
+{
+    throw io::StorageError(
+        fmt::format("{} is at work on {}; wait for it, stop it, or name another output folder",
+                    FileLock::holder(RunLayout::lock_of(ledger)),
+                    ledger.parent_path().parent_path().string()));
 }
 
 // Slurm starts a job again only once it has given up its earlier self.
@@ -104,34 +118,57 @@ ledger::TileEvent event(const std::string& stage, const tiling::Rect& whole, Til
 std::optional<OwnedLedger> OwnedLedger::take(const std::filesystem::path& path,
                                              const Manner& manner)
 {
-    const WhenHeld when_held = manner.when_held;
     OwnedLedger owned;
     owned.owner_ = this_process();
-    const std::string me = fmt::format("process {} on {}", owned.owner_.pid, owned.owner_.host);
     const std::filesystem::path lock_path = RunLayout::lock_of(path);
-    owned.lock_ = FileLock::take(lock_path, me);
-    if (!owned.lock_ && when_held == WhenHeld::give_way) {
+    owned.lock_ = FileLock::take(lock_path, words_of(owned.owner_));
+    if (!owned.lock_ && manner.when_held == WhenHeld::give_way) {
         return std::nullopt;
     }
-    if (!owned.lock_ && when_held == WhenHeld::wait) {
-        owned.lock_ = wait_for_lock(lock_path, me);
+    if (!owned.lock_ && manner.when_held == WhenHeld::wait) {
+        owned.lock_ = wait_for_lock(lock_path, words_of(owned.owner_));
     }
-    const bool take_over =
-        !owned.lock_ && (when_held == WhenHeld::take_over || is_requeue_of(owned.owner_, path));
-    if (!owned.lock_ && !take_over) {
-        throw io::StorageError(fmt::format(
-            "{} is at work on {}; wait for it, stop it, or name another output folder",
-            FileLock::holder(lock_path), path.parent_path().parent_path().string()));
+    if (!owned.lock_) {
+        if (manner.when_held != WhenHeld::take_over && !is_requeue_of(owned.owner_, path)) {
+            refuse_held(path);
+        }
+        owned.take_over(path, manner);
+        return owned;
     }
     if (manner.once_locked) {
         manner.once_locked();
     }
     owned.ledger_ = open_ledger(path, manner.fleeting);
-    owned.owner_ = owned.ledger_->take(owned.owner_, take_over);
-    if (take_over) {
-        spdlog::warn("taking over from {}", FileLock::holder(lock_path));
-    }
+    owned.owner_ = owned.ledger_->take(owned.owner_, false);
     return owned;
+}
+
+// The holder may be frozen in the midst of a commit, with the file locked for good: so its file
+// is left to it, and this process goes on in a copy.
+void OwnedLedger::take_over(const std::filesystem::path& path, const Manner& manner)
+{
+    const std::filesystem::path successor = ledger::successor_of(path);
+    lock_ = FileLock::take(RunLayout::lock_of(successor), words_of(owner_));
+    if (!lock_) {
+        refuse_held(successor);
+    }
+    if (manner.once_locked) {
+        manner.once_locked();
+    }
+    const std::filesystem::path copy =
+        successor.string() + ".part-" + std::to_string(owner_.pid);
+    try {
+        ledger::copy_ledger(path, copy);
+        if (!ledger::publish_successor(copy, successor)) {
+            refuse_held(successor);
+        }
+    } catch (const ledger::DamagedError& error) {
+        spdlog::warn("{} What it told of is done again.", error.what());
+    }
+    spdlog::warn("taking over from {}", FileLock::holder(RunLayout::lock_of(path)));
+    ledger_ = open_ledger(successor, manner.fleeting);
+    owner_.part = ledger::number_of_successions(successor);
+    owner_ = ledger_->take(owner_, true);
 }
 
 void OwnedLedger::record(const std::string& stage, const tiling::Rect& whole,

@@ -17,10 +17,10 @@ enum class WhenHeld {
     refuse,    ///< throw StorageError, naming it
     wait,      ///< until it is free; throws Interrupted
     give_way,  ///< return nothing
-    take_over, ///< take it away: its holder can record nothing more
+    take_over, ///< take it away, by a copy: its holder can record nothing more
 };
 
-/// A ledger that this process owns: by its lock, or, taken over, by its token alone.
+/// A ledger that this process owns, by its lock.
 class OwnedLedger {
 public:
     struct Manner {
@@ -29,7 +29,8 @@ public:
         std::function<void()> once_locked; ///< called before the ledger is opened
     };
     /// Opens or begins the ledger and becomes its owner. A requeued job takes over from its
-    /// own earlier attempt. A damaged ledger is set aside, with a warning, and a new one begun.
+    /// own earlier attempt; so does any with WhenHeld::take_over: it goes on in a successor of
+    /// the ledger. A damaged ledger is set aside, with a warning, and a new one begun.
     static std::optional<OwnedLedger> take(const std::filesystem::path& path,
                                            const Manner& manner);
 
@@ -46,6 +47,7 @@ public:
 
 private:
     OwnedLedger() = default;
+    void take_over(const std::filesystem::path& path, const Manner& manner);
 
     std::optional<ledger::FileLock> lock_;
     std::unique_ptr<ledger::Ledger> ledger_;

@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "io/raster_source.h"
 #include "pipeline/cancellable.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/stages/fingerprint_stage.h"
 #include "pipeline/stages/pair_sources.h"
 
@@ -119,6 +120,7 @@ void prepare_images(const PlannedJob& planned, const RunLayout& layout, const Ow
 void learn_hmi_table(const PlannedJob& planned, const RunLayout& layout,
                      const OwnedLedger& book)
 {
+    give_back_freed_memory(); // of the stage before
     const auto images = open_images(planned, layout, book->facts());
     const auto pixels = images->read_whole(matcher::hmi_level(planned.shape));
     std::shared_ptr<const matcher::HmiTable> table;

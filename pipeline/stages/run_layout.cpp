@@ -1,5 +1,7 @@
 #include "pipeline/stages/run_layout.h"
 
+#include "pipeline/ledger/succession.h"
+
 #include <algorithm>
 #include <regex>
 #include <system_error>
@@ -27,9 +29,19 @@ std::string name(tiling::Shard shard)
     return std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
 }
 
+std::filesystem::path RunLayout::coarse_ledger() const
+{
+    return ledger::latest_of(ledgers() / "coarse.sqlite");
+}
+
+std::filesystem::path RunLayout::assemble_ledger() const
+{
+    return ledger::latest_of(ledgers() / "assemble.sqlite");
+}
+
 std::filesystem::path RunLayout::tiles_ledger(tiling::Shard shard) const
 {
-    return ledgers() / ("tiles-" + name(shard) + ".sqlite");
+    return ledger::latest_of(ledgers() / ("tiles-" + name(shard) + ".sqlite"));
 }
 
 std::filesystem::path RunLayout::part(tiling::Shard shard, int number) const

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -93,10 +94,11 @@ bool RunningProgram::has_ended() const
 Outcome RunningProgram::wait()
 {
     int status = 0;
-    ::waitpid(child_, &status, 0);
+    rusage usage{};
+    ::wait4(child_, &status, 0, &usage);
     child_ = -1;
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    return {code, bytes_of(folder_ + "/out"), err()};
+    return {code, bytes_of(folder_ + "/out"), err(), std::int64_t{usage.ru_maxrss} * 1024};
 }
 
 Outcome run_program(const std::vector<std::string>& command)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -8,11 +9,13 @@
 
 namespace hsgm::tests {
 
-/// What came of a program: its exit code (or minus the signal that ended it) and its words.
+/// What came of a program: its exit code (or minus the signal that ended it), its words, and
+/// the most memory that was resident, as /usr/bin/time has it.
 struct Outcome {
     int code = 0;
     std::string out;
     std::string err;
+    std::int64_t peak_bytes = 0;
 };
 
 /// A child process; what it says goes to files, so it never waits for a reader.

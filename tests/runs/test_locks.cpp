@@ -13,21 +13,27 @@ using Catch::Matchers::Contains;
 
 namespace {
 
+// When a run is stopped: anywhere, or in the midst of writing to its ledger, which is then
+// locked for everybody.
+enum class Moment { any, commit };
+
 // A run at work on its tiles, stopped so that it stays there.
 class Stopped {
 public:
-    explicit Stopped(const RunPlace& place, const std::vector<std::string>& more = {})
+    explicit Stopped(const RunPlace& place, const std::vector<std::string>& more = {},
+                     Moment moment = Moment::any)
         : program_(place.command(more))
     {
         REQUIRE(comes_true([&] { return program_.has_ended() || place.done() > 0; }));
-        // Not in the middle of a transaction, which would keep others from the ledger.
         const std::string journal = place.result() + "/ledger/tiles-0-of-1.sqlite-journal";
         REQUIRE(comes_true([&] {
             program_.signal(SIGSTOP);
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-            const bool between = !std::filesystem::exists(journal);
-            program_.signal(between ? SIGSTOP : SIGCONT);
-            return between;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            const bool there =
+                moment == Moment::any ||
+                (std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 0);
+            program_.signal(there ? SIGSTOP : SIGCONT);
+            return there;
         }));
     }
     Outcome go_on()
@@ -86,6 +92,30 @@ TEST_CASE("a process that was taken over in mid-run does no harm to the one afte
                Catch::Matchers::Predicate<int>([](int part) { return part == 1; }));
     place.run_to(0, {"--shard", "0/1", "--resume"});
     CHECK((place.rasters() == place.undisturbed()));
+}
+
+TEST_CASE("a requeued job takes over from one that is frozen in the midst of a commit")
+{
+    const RunPlace place = slow_place();
+    ::setenv("SLURM_JOB_ID", "73", 1);
+    Stopped first(place, {"--shard", "0/1"}, Moment::commit);
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome status = run_hsgm({"status", place.result()});
+    CHECK_THAT(status.out, Contains("state     at work"));
+    ::setenv("SLURM_RESTART_COUNT", "1", 1);
+    place.run_to(0, {"--shard", "0/1"});
+    ::unsetenv("SLURM_RESTART_COUNT");
+    ::unsetenv("SLURM_JOB_ID");
+    // Nobody waited for what does not come.
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(120));
+    const Snapshot rasters = place.rasters();
+    CHECK((rasters == place.undisturbed()));
+    const auto owners = place.ledger().owners;
+    REQUIRE(owners.size() == 2);
+    CHECK(owners.back().part == 1);
+    CHECK(first.go_on().code == 6);
+    CHECK((place.rasters() == rasters));
+    CHECK(place.ledger().owners.size() == 2);
 }
 
 TEST_CASE("a requeued job takes over from its earlier self, and no other job does")
