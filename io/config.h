@@ -75,7 +75,8 @@ public:
     std::string path(const std::string& key);
     std::optional<std::string> optional_path(const std::string& key);
     std::string path_or(const std::string& key, const std::string& default_value);
-    /// A path, or a map {path, band, nodata, mask, rpc}; must be given. `band: auto` is the
+    /// A path, or a map {path, band, nodata, mask, rpc, azimuth_deg, incidence_deg,
+    /// view_vector}; must be given. `band: auto` is the
     /// default; `nodata: none` switches the file's own off.
     ImageSpec image(const std::string& key);
 
@@ -100,6 +101,7 @@ private:
     ConfigSection(std::shared_ptr<ConfigState> state, const ConfigNode* given,
                   ConfigNode* effective, std::string name);
     const ConfigNode* find(const std::string& key);
+    void read_view(ImageSpec& spec);
     const std::string* find_scalar(const std::string& key, const std::string& allowed);
     const std::string* find_required(const std::string& key, const std::string& allowed);
     void record(const std::string& key, const std::string& value,

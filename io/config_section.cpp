@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 namespace hsgm::io {
@@ -196,6 +197,30 @@ std::string ConfigSection::path_or(const std::string& key, const std::string& de
     return has(key) ? path(key) : note_path(key, default_value);
 }
 
+void ConfigSection::read_view(ImageSpec& spec)
+{
+    constexpr double kMostIncidence = 80;
+    const auto azimuth = optional_number("azimuth_deg", -360, 360);
+    const auto incidence = optional_number("incidence_deg", 0, kMostIncidence);
+    const std::vector<double> vector =
+        has("view_vector") ? numbers("view_vector", 2) : std::vector<double>{};
+    if (azimuth.has_value() != incidence.has_value()) {
+        fail(azimuth ? "azimuth_deg" : "incidence_deg",
+             "says how the image was taken only together: give azimuth_deg and incidence_deg");
+    }
+    if (azimuth) {
+        spec.view_deg = {*azimuth, *incidence};
+    }
+    if (!vector.empty()) {
+        if (azimuth || std::abs(vector[0]) > 5 || std::abs(vector[1]) > 5) {
+            fail("view_vector", azimuth ? "and azimuth_deg say the same: give one of them"
+                                        : "must be [east, north] in metres that a ray moves "
+                                          "per metre up, each within -5 to 5");
+        }
+        spec.view_vector = {vector[0], vector[1]};
+    }
+}
+
 ImageSpec ConfigSection::image(const std::string& key)
 {
     const ConfigNode* node = find(key);
@@ -219,6 +244,7 @@ ImageSpec ConfigSection::image(const std::string& key)
     }
     spec.mask = part.optional_path("mask").value_or("");
     spec.rpc = part.optional_path("rpc").value_or("");
+    part.read_view(spec);
     return spec;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,11 @@ struct ImageSpec {
     std::string mask = "";
     /// A file with the image's camera model; empty: what the image carries or lies beside it.
     std::string rpc = "";
+    /// Of orthoimages: azimuth of the satellite as seen from the ground, clockwise from north,
+    /// and its angle from the zenith, in degrees.
+    std::optional<std::array<double, 2>> view_deg = std::nullopt;
+    /// Or how far a ray moves on the map per metre up, east and north, in metres.
+    std::optional<std::array<double, 2>> view_vector = std::nullopt;
 };
 
 } // namespace hsgm::io

@@ -34,6 +34,30 @@ bool in_degrees(const std::string& wkt)
     return !wkt.empty() && crs_of(wkt).IsGeographic() != FALSE;
 }
 
+std::string horizontal_crs(const std::string& wkt)
+{
+    OGRSpatialReference crs = crs_of(wkt);
+    if (wkt.empty()) {
+        return "";
+    }
+    if (crs.IsCompound() != FALSE) {
+        crs.StripVertical();
+    }
+    crs.DemoteTo2D(nullptr);
+    const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+    char* text = nullptr;
+    crs.exportToWkt(&text, options);
+    const std::string result = text == nullptr ? "" : text;
+    CPLFree(text);
+    return result;
+}
+
+bool has_heights(const std::string& wkt)
+{
+    return !wkt.empty() &&
+           (crs_of(wkt).IsCompound() != FALSE || crs_of(wkt).GetAxesCount() > 2);
+}
+
 std::string crs_name(const std::string& wkt)
 {
     if (wkt.empty()) {

@@ -56,8 +56,9 @@ void set_tiles(Budget& budget, const matcher::Matcher& matcher, int tile)
         kBaseBytes + matcher::coarse_kept_bytes(matcher) + budget.workers * tile_bytes +
         (budget.tiles_in_flight - budget.workers) * matcher::waiting_tile_bytes(matcher, tile) +
         budget.threads * thread_bytes;
-    budget.estimate_bytes = std::max(
-        {budget.prepare_bytes, budget.coarse_bytes, budget.tiles_bytes, budget.refine_bytes});
+    budget.estimate_bytes =
+        budget.held_bytes + std::max({budget.prepare_bytes, budget.coarse_bytes,
+                                      budget.tiles_bytes, budget.refine_bytes});
 }
 
 std::string mebibytes(std::int64_t bytes)
@@ -144,6 +145,7 @@ Budget make_budget(const matcher::Matcher& matcher, const Job& job, int pyramid_
     budget.refine_bytes =
         kBaseBytes + std::max(refine_bytes(shape, job.matcher, budget.threads),
                               heights_bytes(job, shape, budget.threads));
+    budget.held_bytes = job.satellite ? held_bytes(job) : 0;
     budget.pyramid_disk_bytes = PreparedPair::disk_bytes(shape, pyramid_levels);
     budget.scratch_disk_bytes =
         budget.pyramid_disk_bytes + FirstPass::disk_bytes(shape, shape.left.rows);

@@ -104,7 +104,7 @@ RunOptions read_run(ConfigSection section)
     return run;
 }
 
-RectifiedGeometry read_geometry(ConfigSection section)
+RectifiedGeometry read_geometry(ConfigSection section, const std::string& kind)
 {
     RectifiedGeometry geometry;
     geometry.height_per_px_m = section.optional_number("height_per_px_m");
@@ -115,7 +115,8 @@ RectifiedGeometry read_geometry(ConfigSection section)
     geometry.focal_px = section.optional_number("focal_px", 1e-9);
     geometry.baseline_m = section.optional_number("baseline_m", 1e-9);
     const auto reference = section.optional_number("reference_height_m");
-    if (reference && !geometry.height_per_px_m) {
+    // Of orthoimages it is the plane that they were made on.
+    if (reference && !geometry.height_per_px_m && kind != "ortho") {
         section.fail("reference_height_m", "has no meaning without height_per_px_m: "
                                            "give both, or neither");
     }
@@ -170,11 +171,12 @@ OutputPaths output_paths(const std::filesystem::path& folder, const Job& job, bo
 void require_kind(const ConfigSection& section, const std::string& kind)
 {
     if (kind.empty()) {
-        section.fail("kind", "is missing: it must be rectified or rpc in this version");
+        section.fail("kind", "is missing: it must be rectified, rpc or ortho in this version");
     }
-    if (kind != "rectified" && kind != "rpc") {
-        section.fail("kind",
-                     fmt::format("must be rectified or rpc in this version, not '{}'", kind));
+    if (kind != "rectified" && kind != "rpc" && kind != "ortho") {
+        section.fail(
+            "kind",
+            fmt::format("must be rectified, rpc or ortho in this version, not '{}'", kind));
     }
 }
 
@@ -185,8 +187,8 @@ tiling::DisparityRange require_disparity(const ConfigSection& section,
 {
     if (job.satellite) {
         if (range) {
-            section.fail("disparity", "is found by the program for geometry rpc: leave it out, "
-                                      "or give geometry.heights_m");
+            section.fail("disparity", "is found by the program for geometry rpc and ortho: "
+                                      "leave it out, or give geometry.heights_m");
         }
         return {};
     }
@@ -204,9 +206,16 @@ void refuse_mixtures(const ConfigSection& pair, const ConfigSection& geometry, c
         geometry.fail(job.geometry.focal_px ? "focal_px" : "height_per_px_m",
                       "is for geometry kind rectified only: leave it out");
     }
-    if (!job.satellite && !(job.left.rpc.empty() && job.right.rpc.empty())) {
-        pair.fail(job.left.rpc.empty() ? "right.rpc" : "left.rpc",
-                  "is for geometry kind rpc only: leave it out");
+    const bool ortho = job.satellite && job.satellite->search.ortho;
+    for (const auto& [image, name] : {std::pair(&job.left, "left"), {&job.right, "right"}}) {
+        if (!job.satellite && !image->rpc.empty()) {
+            pair.fail(std::string(name) + ".rpc",
+                      "is for geometry kind rpc or ortho only: leave it out");
+        }
+        if (!ortho && (image->view_deg || image->view_vector)) {
+            pair.fail(std::string(name) + (image->view_deg ? ".azimuth_deg" : ".view_vector"),
+                      "is for geometry kind ortho only: leave it out");
+        }
     }
 }
 
@@ -238,7 +247,7 @@ Configuration read_configuration(io::ConfigDocument& document)
                   "is for several pairs of one area, which hsgm run alone takes, with `images` "
                   "and without `pair`");
     }
-    job.geometry = read_geometry(geometry);
+    job.geometry = read_geometry(geometry, kind);
     job.satellite = read_satellite(geometry, root.section("dsm"), kind);
     const auto creation_options = output.texts("creation_options");
     const bool hillshade = output.flag("hillshade", true);

@@ -45,6 +45,47 @@ std::optional<geometry::HeightSpan> read_heights(ConfigSection& section)
     return geometry::HeightSpan{heights[0], heights[1]};
 }
 
+/// The reference DEM, and how high above it the ground may be.
+void read_dem(ConfigSection& section, SatelliteOptions& options)
+{
+    const auto path = section.optional_path("reference_dem");
+    const std::string vertical = section.text("reference_dem_vertical", "auto");
+    const auto above =
+        section.has("above_dem_m") ? section.numbers("above_dem_m", 2) : std::vector<double>{};
+    if (path) {
+        options.dem = ElevationSpec{*path, vertical == "auto" ? "" : vertical};
+    } else if (vertical != "auto" || !above.empty()) {
+        section.fail(above.empty() ? "reference_dem_vertical" : "above_dem_m",
+                     "has no meaning without reference_dem");
+    }
+    if (!above.empty()) {
+        if (!(above[0] < above[1]) || above[0] < kLowestM || above[1] > kHighestM) {
+            section.fail("above_dem_m",
+                         fmt::format("is [{:g}, {:g}]; it must be [lowest, highest] ground "
+                                     "over the reference DEM, within {:g} to {:g} m",
+                                     above[0], above[1], kLowestM, kHighestM));
+        }
+        options.search.above_dem = geometry::HeightSpan{above[0], above[1]};
+    }
+    try {
+        check_vertical(vertical == "auto" ? "" : vertical);
+    } catch (const std::invalid_argument& error) {
+        section.fail("reference_dem_vertical", std::string("cannot be used: ") + error.what());
+    }
+}
+
+/// What orthoimages were made on.
+OrthoBase read_base(ConfigSection& section, const SatelliteOptions& options)
+{
+    OrthoBase base;
+    base.plane_m = section.optional_number("reference_height_m", kLowestM, kHighestM);
+    if (!base.plane_m && !options.dem) {
+        section.fail("kind", "is ortho, so what the orthoimages were made on must be given: "
+                             "reference_height_m for a plane, or reference_dem");
+    }
+    return base;
+}
+
 void check_map(ConfigSection& section, const PairGeometryOptions& search)
 {
     // The automatic map is right wherever the images lie; with it, any zone shows whether the
@@ -73,6 +114,8 @@ std::string first_given(const std::vector<std::string>& keys, const SatelliteOpt
         {"pointing_from", !given.pointing_from.empty()},
         {"bounds", a.region.bounds.has_value()},
         {"region", !a.region.file.empty()},
+        {"reference_dem", given.dem.has_value()},
+        {"above_dem_m", a.above_dem.has_value()},
         {"gsd_m", given.dsm_gsd_m != defaults.dsm_gsd_m},
         {"crs", a.crs != b.crs},
         {"vertical", a.vertical != b.vertical}};
@@ -99,6 +142,7 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     SatelliteOptions options;
     options.search.heights = read_heights(geometry);
     options.search.pointing = read_pointing(geometry);
+    read_dem(geometry, options);
     options.search.largest_pointing_px =
         geometry.number("largest_pointing_px", defaults.search.largest_pointing_px, 1, 1000);
     options.search.gsd_m =
@@ -112,23 +156,30 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     options.search.crs = crs == "auto" ? "" : crs;
     const std::string vertical = dsm.text("vertical", "ellipsoid");
     options.search.vertical = vertical == "ellipsoid" ? "" : vertical;
-    if (kind != "rpc") {
-        constexpr const char* kWhy = "is for geometry kind rpc only: leave it out";
+    if (kind != "rpc" && kind != "ortho") {
+        constexpr const char* kWhy = "is for geometry kind rpc or ortho only: leave it out";
         refuse(geometry,
                first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
-                            "stored", "pointing_from"},
+                            "stored", "pointing_from", "reference_dem", "above_dem_m"},
                            options),
                kWhy);
         refuse(dsm, first_given({"gsd_m", "crs", "vertical", "bounds", "region"}, options),
                kWhy);
         return std::nullopt;
     }
+    if (kind == "ortho") {
+        options.search.ortho = read_base(geometry, options);
+    }
+    if (options.dem && options.search.heights) {
+        geometry.fail("heights_m", "and reference_dem say both where the ground is: give "
+                                   "above_dem_m, heights over the DEM, instead");
+    }
     if (!options.stored.empty()) {
         constexpr const char* kWhy = "is what geometry.stored says already: leave one of the "
                                      "two out";
         refuse(geometry,
                first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
-                            "pointing_from"},
+                            "pointing_from", "above_dem_m"},
                            options),
                kWhy);
         refuse(dsm, first_given({"crs", "vertical"}, options), kWhy);

@@ -7,9 +7,10 @@
 
 namespace hsgm::pipeline {
 
-/// How a raw pair with RPCs becomes a DSM.
+/// How a raw pair with RPCs, or one of orthoimages, becomes a DSM.
 struct SatelliteOptions {
     PairGeometryOptions search;
+    std::optional<ElevationSpec> dem; ///< read into `search` by planning
     double dsm_gsd_m = 0; ///< side of a cell of the DSM; 0: a round number near the images'
     /// A geometry whose corrections of both images are taken; empty: they are to be found.
     std::string pointing_from;

@@ -1,15 +1,21 @@
 #include "pipeline/commands/batch_command.h"
 
+#include "io/config.h"
 #include "io/error.h"
+#include "io/pending_file.h"
 #include "pipeline/batch/batch.h"
+#include "pipeline/batch/ortho_archive.h"
 #include "pipeline/error.h"
+#include "pipeline/stages/raster_strips.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace hsgm::pipeline {
@@ -27,6 +33,10 @@ and keys of the configuration, such as matcher.disparity); or a YAML file:
 
   pairs:
     - {name: north, left: n/left.tif, right: n/right.tif, set: {matcher.disparity: [0, 63]}}
+
+For geometry kind ortho the folder holds orthoimages: each is paired with the one that serves
+it best, by overlap and view; how they were taken is in their metadata, or in views.csv there
+(image, azimuth_deg, incidence_deg, rpc). DIR/unpaired.csv says what was left out, and why.
 
 Each pair is a run of its own, with results in DIR/NAME and its log in DIR/NAME/logs/job.log; one
 that fails does not disturb the others. DIR/summary.csv has a row for each. Exit code 5 where
@@ -56,9 +66,37 @@ void print_table(const std::vector<BatchResult>& results)
     }
 }
 
+/// The pairs of a folder of orthoimages; nothing where the archive is something else.
+std::optional<std::vector<BatchPair>> ortho_pairs(const Arguments& arguments)
+{
+    auto document = io::ConfigDocument::load(arguments.options.config);
+    for (const std::string& setting : arguments.options.overrides) {
+        document.set(setting);
+    }
+    io::ConfigSection geometry = document.root().section("geometry");
+    if (geometry.text("kind", "") != "ortho" ||
+        !std::filesystem::is_directory(arguments.manifest)) {
+        return std::nullopt;
+    }
+    OrthoArchive archive = pair_orthos(
+        arguments.manifest, geometry.optional_number("reference_height_m").value_or(0));
+    for (const LeftOutImage& image : archive.left_out) {
+        spdlog::warn("not paired: {}: {}", image.image, image.why);
+    }
+    if (archive.pairs.empty()) {
+        throw io::ConfigError(
+            fmt::format("{} holds no two orthoimages that make a pair", arguments.manifest));
+    }
+    make_output_folder(arguments.options.folder.string());
+    io::write_text_file((arguments.options.folder / "unpaired.csv").string(),
+                        text_of(archive.left_out));
+    return std::move(archive.pairs);
+}
+
 void run(const Arguments& arguments)
 {
-    const auto pairs = read_manifest(arguments.manifest);
+    const auto orthos = ortho_pairs(arguments);
+    const auto pairs = orthos ? *orthos : read_manifest(arguments.manifest);
     std::size_t ended = 0;
     const auto told = [&](const BatchResult& result) {
         ++ended;

@@ -38,6 +38,10 @@ and of a raw satellite pair with RPCs:
   pair: {left: left.tif, right: right.tif}
   geometry: {kind: rpc}
   output: {folder: result}
+and of two orthoimages, which say how they were taken, on a DEM:
+  pair: {left: left.tif, right: right.tif}
+  geometry: {kind: ortho, reference_dem: dem.tif}
+  output: {folder: result}
 Several raw images of one area become one DSM:
   images: {a: a.tif, b: b.tif, c: c.tif}
   geometry: {kind: rpc}

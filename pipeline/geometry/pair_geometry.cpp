@@ -66,14 +66,53 @@ ImageCorrection correction(const json& j)
             j.at("y_px"), j.at("y_by_x"), j.at("y_by_y")};
 }
 
-json written(const RpcCamera& camera)
+json written(const OrthoModel& m)
 {
-    return {{"rpc", written(camera.model())}, {"correction", written(camera.correction())}};
+    json j{{"rows", m.size.rows},
+           {"cols", m.size.cols},
+           {"crs", m.crs},
+           {"grid", m.grid.corner_transform()},
+           {"level_m", m.level_m},
+           {"margin_px", m.margin_px},
+           {"slope", {m.slope_x, m.slope_y}}};
+    if (m.rpc) {
+        j["rpc"] = written(*m.rpc);
+    }
+    return j;
 }
 
-RpcCamera camera(const json& j)
+OrthoModel ortho_model(const json& j)
 {
-    return RpcCamera(model(j.at("rpc")), correction(j.at("correction")));
+    OrthoModel m;
+    m.size = {j.at("rows"), j.at("cols")};
+    j.at("crs").get_to(m.crs);
+    m.grid = MapGrid(j.at("grid").get<std::array<double, 6>>());
+    j.at("level_m").get_to(m.level_m);
+    j.at("margin_px").get_to(m.margin_px);
+    m.slope_x = j.at("slope").at(0);
+    m.slope_y = j.at("slope").at(1);
+    if (j.contains("rpc")) {
+        m.rpc = model(j.at("rpc"));
+    }
+    return m;
+}
+
+json written(const SensorModel& sensor)
+{
+    json j{{"correction", written(sensor.correction())}};
+    if (sensor.rpc() != nullptr) {
+        j["rpc"] = written(*sensor.rpc());
+    } else {
+        j["ortho"] = written(*sensor.ortho());
+    }
+    return j;
+}
+
+SensorModel sensor(const json& j)
+{
+    const ImageCorrection mended = correction(j.at("correction"));
+    return j.contains("ortho") ? SensorModel(ortho_model(j.at("ortho")), mended)
+                               : SensorModel(model(j.at("rpc")), mended);
 }
 
 json written(const Lattice& lattice)
@@ -203,8 +242,8 @@ PairGeometry read(const json& j)
         throw GeometryError("the stored geometry is of another version of this program");
     }
     const json& ground = j.at("ground");
-    PairGeometry pair{camera(j.at("left")),
-                      camera(j.at("right")),
+    PairGeometry pair{sensor(j.at("left")),
+                      sensor(j.at("right")),
                       j.at("frame_map"),
                       j.at("output_map"),
                       surface(j.at("surface")),

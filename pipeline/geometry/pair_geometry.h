@@ -5,7 +5,7 @@
 #include "pipeline/geometry/overlap.h"
 #include "pipeline/geometry/pointing.h"
 #include "pipeline/geometry/reference_surface.h"
-#include "pipeline/geometry/rpc_camera.h"
+#include "pipeline/geometry/sensor_model.h"
 #include "tiling/disparity_range.h"
 
 #include <optional>
@@ -17,15 +17,16 @@ namespace hsgm::geometry {
 /// All that is known of a pair before it is matched. Made once, stored, and then only read:
 /// whoever has it agrees with all others to the last bit.
 struct PairGeometry {
-    RpcCamera left;
-    RpcCamera right;        ///< with the correction that was found
+    SensorModel left;
+    SensorModel right;      ///< with the correction that was found
     std::string frame_map;  ///< the map grid of the frame
     std::string output_map; ///< and that of ground points
     ReferenceSurface surface;
     EpipolarFrame frame;
     GroundLattice ground;
     tiling::DisparityRange disparity;
-    HeightSpan heights; ///< that the disparities stand for, above the ellipsoid
+    HeightSpan heights; ///< that the disparities stand for, above the ellipsoid; over a
+                        ///< surface with relief, from its lowest to its highest place
     std::optional<Pointing> pointing;
     std::vector<std::string> warnings;
 };

@@ -52,6 +52,18 @@ ReferenceSurface::ReferenceSurface(double west, double north, double step_m,
     level_m_ = sum / static_cast<double>(posts_.size().area());
 }
 
+ReferenceSurface ReferenceSurface::lifted(double by_m) const
+{
+    if (is_level()) {
+        return ReferenceSurface(level_m_ + by_m);
+    }
+    tiling::Image<double> posts = posts_;
+    for (std::int64_t i = 0; i < posts.size().area(); ++i) {
+        posts.data()[i] += by_m;
+    }
+    return {west_, north_, step_m_, std::move(posts)};
+}
+
 double ReferenceSurface::height_m(double x, double y) const
 {
     double slope_x = 0;

@@ -23,6 +23,9 @@ public:
     /// Height with its slope to the east and to the north, in metres per metre.
     double height_m(double x, double y, double& slope_x, double& slope_y) const;
 
+    /// The same surface, so much higher.
+    ReferenceSurface lifted(double by_m) const;
+
     bool is_level() const { return posts_.size().area() == 0; }
     double level_m() const { return level_m_; }
     double west() const { return west_; }

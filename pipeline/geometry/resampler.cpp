@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace hsgm::geometry {
 
@@ -114,8 +115,9 @@ Resampler::Weights Resampler::make_weights(double span, Kernel kernel)
     return weights;
 }
 
-Resampler::Resampler(const Lattice& sensor_from_frame, tiling::Size source, Kernel kernel)
-    : lattice_(sensor_from_frame), source_(source),
+Resampler::Resampler(const Lattice& sensor_from_frame, tiling::Size source, Kernel kernel,
+                     PlaceInSource then)
+    : lattice_(sensor_from_frame), source_(source), then_(std::move(then)),
       across_(make_weights(span_of(sensor_from_frame, 0), kernel)),
       down_(make_weights(span_of(sensor_from_frame, 1), kernel))
 {
@@ -132,6 +134,10 @@ Resampler::Places Resampler::places_of(const Rect& block) const
         along.set(block.row + r);
         for (int c = 0; c < block.cols; ++c) {
             along.at(block.col + c, xy);
+            if (then_) {
+                const ImagePoint place = then_({xy[0], xy[1]});
+                xy = {place.x, place.y};
+            }
             const int x = to_fixed(xy[0]);
             const int y = to_fixed(xy[1]);
             places.x(r, c) = x;

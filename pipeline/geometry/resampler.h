@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/geometry/lattice.h"
+#include "pipeline/geometry/points.h"
 #include "tiling/image.h"
 #include "tiling/rect.h"
 
@@ -21,6 +22,10 @@ enum class Kernel {
 using ReadPixels =
     std::function<void(const tiling::Rect& window, tiling::ImageView<double> values)>;
 
+/// Where the source shows what a lattice's (x, y) speak of, if that is not the source itself;
+/// not finite where it shows nothing.
+using PlaceInSource = std::function<ImagePoint(ImagePoint)>;
+
 /// Draws a source image into a frame, straight from its pixels. A pixel of the result depends
 /// on its place alone and not on the window in which it is asked for, to the last bit.
 ///
@@ -31,8 +36,10 @@ using ReadPixels =
 class Resampler {
 public:
     /// `sensor_from_frame` holds x and y in the source for rows and columns of the frame; it
-    /// must outlive this.
-    Resampler(const Lattice& sensor_from_frame, tiling::Size source, Kernel kernel);
+    /// must outlive this. With `then`, x and y are not yet those of the source: each place is
+    /// handed through it. It must depend on the place alone, and move neighbours alike.
+    Resampler(const Lattice& sensor_from_frame, tiling::Size source, Kernel kernel,
+              PlaceInSource then = nullptr);
 
     /// The source pixels that a window of the frame may read: inside the source, perhaps empty.
     tiling::Rect source_window(const tiling::Rect& window) const;
@@ -71,6 +78,7 @@ private:
 
     const Lattice& lattice_;
     tiling::Size source_;
+    PlaceInSource then_;
     Weights across_;
     Weights down_;
 };

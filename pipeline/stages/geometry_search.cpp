@@ -4,6 +4,7 @@
 #include "pipeline/geometry/disparity_bounds.h"
 #include "pipeline/geometry/error.h"
 #include "pipeline/geometry/tie_points.h"
+#include "pipeline/stages/geometry_start.h"
 #include "pipeline/stages/given_heights.h"
 #include "pipeline/stages/quick_match.h"
 #include "pipeline/stages/region_stage.h"
@@ -30,8 +31,7 @@ using geometry::PairGeometry;
 using geometry::Pointing;
 using geometry::PointingModel;
 using geometry::ReferenceSurface;
-using geometry::RpcCamera;
-using geometry::RpcGroundCamera;
+using geometry::ReliefSurface;
 using geometry::TieGate;
 using geometry::TiePoint;
 using tiling::Image;
@@ -56,6 +56,11 @@ constexpr int kLeastConfidence = 160;
 /// than theirs makes the errors of fractions of a pixel smaller on the ground
 /// (docs/geometry.md has the measurements).
 constexpr double kFrameStep = 0.75;
+/// Over relief: cells of the surface, of the parallax that the heights span, so that cubics
+/// through four disparities hold; and what ground points may then be off, of a step.
+constexpr double kCellsOfParallax = 3;
+constexpr double kReliefTolerance = 0.02;
+constexpr double kTolerance = 0.01;
 
 /// What the frame shows round a region of interest, for the matcher's sake.
 constexpr double kRegionMarginPx = 100;
@@ -71,8 +76,9 @@ class Search {
 public:
     Search(const SensorImage& left, const SensorImage& right,
            const PairGeometryOptions& options)
-        : left_(left), right_(right), options_(options), map_(find_map())
+        : left_(left, options), right_(right, options), options_(options), map_(find_map())
     {
+        lay_relief(0);
     }
 
     PairGeometry run();
@@ -84,7 +90,10 @@ public:
 private:
     void begin();
     MapProjection find_map() const;
-    HeightSpan possible_heights() const;
+    void lay_relief(double least_cell_m);
+    void smooth_relief(bool known);
+    ReferenceSurface surface_at(double level_m) const;
+    HeightSpan heights_over(const ReferenceSurface& surface) const;
     geometry::Polygon region(const MapProjection& output, double margin_m) const;
     FrameOptions frame_options(double level_m, HeightSpan heights, double gsd_m) const;
     EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer,
@@ -102,6 +111,7 @@ private:
     SensorView right_;
     const PairGeometryOptions& options_;
     MapProjection map_;
+    std::optional<ReliefSurface> relief_; // level_m_ and heights_ speak of its mean height
     int reduction_ = 1;
     double level_m_ = 0;
     HeightSpan heights_;     // as far as they are known
@@ -111,24 +121,66 @@ private:
     std::vector<std::string> warnings_;
 };
 
-HeightSpan Search::possible_heights() const
-{
-    return options_.heights
-               ? *options_.heights
-               : geometry::heights_of(left_.camera().model(), right_.camera().model());
-}
-
 MapProjection Search::find_map() const
 {
-    const HeightSpan heights = possible_heights();
-    const auto middle =
-        left_.camera().locate({left_.size().cols / 2.0, left_.size().rows / 2.0},
-                              (heights.low_m + heights.high_m) / 2);
+    const HeightSpan heights = possible_heights(left_.model(), right_.model(), options_);
+    const auto middle = middle_of(left_.model(), left_.size(), heights);
     if (!middle) {
         throw geometry::GeometryError(
             "the middle of the left image meets no ground: the RPC is that of another image");
     }
     return MapProjection::automatic(middle->longitude_deg, middle->latitude_deg);
+}
+
+/// The surface of the reference DEM, where there is one.
+void Search::lay_relief(double least_cell_m)
+{
+    if (!options_.dem) {
+        return;
+    }
+    const HeightSpan heights = possible_heights(left_.model(), right_.model(), options_);
+    relief_ =
+        relief_of(*options_.dem, map_, ground_box(left_.sensor(), right_.sensor(), options_),
+                  pixel_of(*left_.camera(map_), left_.size(), heights), least_cell_m);
+    if (relief_->covered < 1 && least_cell_m == 0) {
+        warnings_.push_back(fmt::format(
+            "the reference DEM has heights for {:.1f} % of what both images show; beyond them "
+            "the surface that disparities count from goes on level",
+            100 * relief_->covered));
+    }
+}
+
+/// Makes the surface smoother where the heights found span much parallax.
+void Search::smooth_relief(bool known)
+{
+    const EpipolarFrame frame = frame_at(level_m_, heights_, 1);
+    const double parallax_m = (heights_.high_m - heights_.low_m) * frame.px_per_m * frame.gsd_m;
+    if (kCellsOfParallax * parallax_m <= relief_->surface.step_m()) {
+        return;
+    }
+    lay_relief(kCellsOfParallax * parallax_m);
+    if (known) {
+        heights_ = heights_round(*relief_, options_);
+    } else {
+        find_heights(); // over the new surface they are not quite the same
+    }
+}
+
+ReferenceSurface Search::surface_at(double level_m) const
+{
+    return relief_ ? relief_->surface.lifted(level_m - relief_->surface.level_m())
+                   : ReferenceSurface(level_m);
+}
+
+/// What the span of heights means where the surface has relief.
+HeightSpan Search::heights_over(const ReferenceSurface& surface) const
+{
+    if (!relief_) {
+        return heights_;
+    }
+    const double lift = surface.level_m() - relief_->surface.level_m();
+    return {relief_->lowest_m + lift + heights_.low_m - level_m_,
+            relief_->highest_m + lift + heights_.high_m - level_m_};
 }
 
 /// Convex and wider than what is wanted by `margin_m`; empty: everything.
@@ -161,19 +213,20 @@ EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer,
     FrameOptions how = frame_options(level_m, heights, options_.gsd_m);
     how.finer = finer;
     how.region = std::move(region);
-    return geometry::make_epipolar_frame(RpcGroundCamera(left_.camera(), map_), left_.size(),
-                                         RpcGroundCamera(right_.camera(), map_), right_.size(),
-                                         ReferenceSurface(level_m), how);
+    return geometry::make_epipolar_frame(*left_.camera(map_), left_.size(),
+                                         *right_.camera(map_), right_.size(),
+                                         surface_at(level_m), how);
 }
 
 /// The reduced images in a frame of their own, or one with pixels `coarser` times as wide.
 DrawnPair Search::draw_reduced(double level_m, HeightSpan heights, int coarser) const
 {
-    const RpcGroundCamera left(left_.reduced_camera(), map_);
-    const RpcGroundCamera right(right_.reduced_camera(), map_);
+    const auto left = left_.reduced_camera(map_);
+    const auto right = right_.reduced_camera(map_);
+    const ReferenceSurface surface = surface_at(level_m);
     const auto frame = [&](double gsd_m) {
-        return geometry::make_epipolar_frame(left, left_.reduced().size(), right,
-                                             right_.reduced().size(), ReferenceSurface(level_m),
+        return geometry::make_epipolar_frame(*left, left_.reduced_size(), *right,
+                                             right_.reduced_size(), surface,
                                              frame_options(level_m, heights, gsd_m));
     };
     DrawnPair pair;
@@ -181,16 +234,16 @@ DrawnPair Search::draw_reduced(double level_m, HeightSpan heights, int coarser) 
     if (coarser > 1) {
         pair.frame = frame(pair.frame.gsd_m * coarser);
     }
-    pair.left = draw(left_.reduced(), pair.frame.left, pair.frame.size);
-    pair.right = draw(right_.reduced(), pair.frame.right, pair.frame.size);
+    pair.left = left_.draw_reduced(pair.frame.left, pair.frame.size);
+    pair.right = right_.draw_reduced(pair.frame.right, pair.frame.size);
     return pair;
 }
 
 /// Pixels of the images to one of those in which rough tie points are sought.
 int Search::feature_reduction() const
 {
-    const Size left = left_.reduced().size();
-    const Size right = right_.reduced().size();
+    const Size left = left_.reduced_size();
+    const Size right = right_.reduced_size();
     const int side = std::max({left.rows, left.cols, right.rows, right.cols});
     return reduction_ * tiling::ceil_div(side, kFeaturePx);
 }
@@ -209,7 +262,7 @@ void Search::find_rough_pointing()
         geometry::match_features({0, 0, pair.left}, {0, 0, pair.right}, gate, kCoarseFeatures);
     std::vector<bool> agrees;
     const Pointing rough = geometry::estimate_pointing(
-        pair.frame, points, right_.reduced().size(), PointingModel::shift, &agrees);
+        pair.frame, points, right_.reduced_size(), PointingModel::shift, &agrees);
     std::vector<TiePoint> agreeing;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (agrees[i]) {
@@ -280,8 +333,8 @@ void Search::find_heights()
 /// Features of patches at full resolution, evenly spread over the frame.
 std::vector<TiePoint> Search::patch_points(const EpipolarFrame& frame) const
 {
-    ResampledSource left(io::RasterSource(left_.sensor().image), frame.left, frame.size);
-    ResampledSource right(io::RasterSource(right_.sensor().image), frame.right, frame.size);
+    ResampledSource left = left_.resampled(frame.left, frame.size);
+    ResampledSource right = right_.resampled(frame.right, frame.size);
     const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
                        1.5 * feature_reduction() + 1};
     const auto patches_of = [](int extent) {
@@ -326,8 +379,8 @@ void Search::find_pointing()
 
 PairGeometry Search::finish()
 {
-    const RpcGroundCamera left(left_.camera(), map_);
-    const RpcGroundCamera right(right_.camera(), map_);
+    const auto left = left_.camera(map_);
+    const auto right = right_.camera(map_);
     const MapProjection output =
         options_.crs.empty() ? MapProjection::from_text(map_.text(), options_.vertical)
                              : MapProjection::from_text(options_.crs, options_.vertical);
@@ -340,36 +393,37 @@ PairGeometry Search::finish()
         static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
         static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
     geometry::GroundLattice ground(
-        frame, left, right, disparity.min, disparity.max,
-        [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); });
-    return {left_.camera(),
-            right_.camera(),
-            map_.text(),
-            output.text(),
-            ReferenceSurface(level_m_),
-            std::move(frame),
-            std::move(ground),
-            disparity,
-            heights_,
-            pointing_,
+        frame, *left, *right, disparity.min, disparity.max,
+        [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); },
+        relief_ ? kReliefTolerance : kTolerance);
+    ReferenceSurface surface = surface_at(level_m_);
+    const HeightSpan heights = heights_over(surface);
+    return {left_.model(),    right_.model(),    map_.text(), output.text(), std::move(surface),
+            std::move(frame), std::move(ground), disparity,   heights,       pointing_,
             warnings_};
 }
 
 void Search::begin()
 {
     const geometry::Overlap overlap = geometry::find_overlap(
-        RpcGroundCamera(left_.camera(), map_), left_.size(),
-        RpcGroundCamera(right_.camera(), map_), right_.size(), possible_heights());
-    level_m_ = overlap.level_m;
-    heights_ = options_.heights ? *options_.heights : overlap.shared;
-    if (!options_.heights || options_.pointing) {
+        *left_.camera(map_), left_.size(), *right_.camera(map_), right_.size(),
+        possible_heights(left_.model(), right_.model(), options_));
+    level_m_ = relief_ ? relief_->surface.level_m() : overlap.level_m;
+    heights_ = relief_            ? heights_round(*relief_, options_)
+               : options_.heights ? *options_.heights
+                                  : overlap.shared;
+    const bool known = relief_ ? options_.above_dem.has_value() : options_.heights.has_value();
+    if (!known || options_.pointing) {
         reduction_ = std::max(reduction_of(left_.size()), reduction_of(right_.size()));
         left_.reduce(reduction_);
         right_.reduce(reduction_);
         find_rough_pointing();
     }
-    if (!options_.heights) {
+    if (!known) {
         find_heights();
+    }
+    if (relief_) {
+        smooth_relief(known);
     }
 }
 

@@ -10,11 +10,16 @@ PairSources open_sources(const Job& job)
         return {std::make_unique<FileSource>(io::RasterSource(job.left)),
                 std::make_unique<FileSource>(io::RasterSource(job.right))};
     }
-    const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
-    return {
-        std::make_unique<ResampledSource>(io::RasterSource(job.left), frame.left, frame.size),
-        std::make_unique<ResampledSource>(io::RasterSource(job.right), frame.right,
-                                          frame.size)};
+    const geometry::PairGeometry& pair = *job.satellite->pair;
+    const auto source = [&](const io::ImageSpec& image, const geometry::SensorModel& model,
+                            const geometry::Lattice& lattice) {
+        const auto& ortho = job.satellite->search.ortho;
+        return std::make_unique<ResampledSource>(io::RasterSource(image), lattice,
+                                                 pair.frame.size,
+                                                 ortho ? warp_of(model, *ortho) : nullptr);
+    };
+    return {source(job.left, pair.left, pair.frame.left),
+            source(job.right, pair.right, pair.frame.right)};
 }
 
 } // namespace hsgm::pipeline

@@ -41,13 +41,23 @@ Limits limits_of(io::PixelType type)
     }
 }
 
+geometry::PlaceInSource through(std::shared_ptr<const geometry::ReliefWarp> warp)
+{
+    if (!warp) {
+        return nullptr;
+    }
+    return
+        [warp = std::move(warp)](geometry::ImagePoint place) { return warp->source_of(place); };
+}
+
 } // namespace
 
 ResampledSource::ResampledSource(io::RasterSource raster,
                                  const geometry::Lattice& sensor_from_frame, tiling::Size frame,
-                                 geometry::Kernel kernel)
+                                 std::shared_ptr<const geometry::ReliefWarp> warp)
     : raster_(std::move(raster)), frame_(frame),
-      resampler_(sensor_from_frame, raster_.size(), kernel)
+      resampler_(sensor_from_frame, raster_.size(), geometry::Kernel::lanczos,
+                 through(std::move(warp)))
 {
 }
 

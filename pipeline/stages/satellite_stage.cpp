@@ -13,8 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
+#include <utility>
 
 namespace hsgm::pipeline {
 
@@ -32,31 +32,22 @@ double cell_m(const Job& job)
     return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.images_gsd_m);
 }
 
-/// The program itself and its libraries.
-constexpr std::int64_t kProgramBytes = std::int64_t{64} << 20;
-
-std::int64_t search_bytes(const Job& job)
+/// Reads the reference DEM where the images lie; what is to be said of it.
+std::string take_dem(Job& job)
 {
-    return job.satellite->stored.empty()
-               ? geometry_search_bytes(io::RasterSource(job.left).size(),
-                                       io::RasterSource(job.right).size())
-               : 0;
-}
-
-/// The search comes before the plan, which needs what it finds.
-void require_memory_for_search(const Job& job)
-{
-    constexpr std::int64_t kMiB = std::int64_t{1} << 20;
-    const std::int64_t needed = kProgramBytes + search_bytes(job);
-    const auto allowed = static_cast<std::int64_t>(
-        job.run.memory_bytes.value_or(std::numeric_limits<std::int64_t>::max()));
-    if (needed > allowed) {
-        throw BudgetError(fmt::format(
-            "to find the geometry of {} and {} takes {} MiB of memory, but the run may take {} "
-            "MiB: allow more with --memory, or name the geometry.json of an earlier run as "
-            "geometry.stored",
-            job.left.path, job.right.path, needed / kMiB, allowed / kMiB));
+    SatelliteOptions& options = *job.satellite;
+    if (!options.dem || options.search.dem) {
+        return "";
     }
+    constexpr double kSpareDeg = 0.002; // some 200 m, and a tenth of the sides
+    geometry::MapBox box = ground_box({job.left, {}}, {job.right, {}}, options.search);
+    box = box.grown(kSpareDeg + std::max(box.width(), box.height()) / 10);
+    Elevation elevation = read_elevation(*options.dem, box);
+    options.search.dem = elevation.grid;
+    if (options.search.ortho) {
+        options.search.ortho->dem = elevation.grid;
+    }
+    return elevation.warning;
 }
 
 } // namespace
@@ -64,16 +55,19 @@ void require_memory_for_search(const Job& job)
 void plan_satellite(Job& job)
 {
     SatelliteOptions& satellite = *job.satellite;
+    const std::string warning = take_dem(job);
     if (satellite.stored.empty()) {
-        require_memory_for_search(job);
         SensorImage left{job.left, {}};
         SensorImage right{job.right, {}};
         if (!satellite.pointing_from.empty()) {
             std::tie(left.correction, right.correction) =
                 read_corrections(satellite.pointing_from, job);
         }
-        satellite.pair =
-            std::make_shared<PairGeometry>(find_pair_geometry(left, right, satellite.search));
+        PairGeometry pair = find_pair_geometry(left, right, satellite.search);
+        if (!warning.empty()) {
+            pair.warnings.push_back(warning);
+        }
+        satellite.pair = std::make_shared<PairGeometry>(std::move(pair));
     } else {
         satellite.pair = std::make_shared<PairGeometry>(read_geometry(satellite.stored, job));
     }
@@ -101,13 +95,16 @@ MatchedPair matched_pair(const Job& job)
 {
     const PairGeometry& pair = *job.satellite->pair;
     const OutputPaths& o = job.outputs;
-    return {
-        o.disparity,
-        o.confidence,
-        o.reasons,
-        &pair.ground,
-        {&pair.frame, io::RasterSource(job.left).size(), io::RasterSource(job.right).size()},
-        pair.frame.gsd_m};
+    const auto size = [](const geometry::SensorModel& model, const io::ImageSpec& image) {
+        return model.ortho() == nullptr ? io::RasterSource(image).size()
+                                        : model.ortho()->levelled_size();
+    };
+    return {o.disparity,
+            o.confidence,
+            o.reasons,
+            &pair.ground,
+            {&pair.frame, size(pair.left, job.left), size(pair.right, job.right)},
+            pair.frame.gsd_m};
 }
 
 DsmSummary write_satellite_heights(const Job& job)
@@ -124,6 +121,18 @@ DsmSummary write_satellite_heights(const Job& job)
                       {}});
 }
 
+std::int64_t held_bytes(const Job& job)
+{
+    const PairGeometry& pair = *job.satellite->pair;
+    const auto bytes_of = [](const geometry::Lattice& lattice) {
+        return static_cast<std::int64_t>(lattice.values().size() * sizeof(double));
+    };
+    const auto& dem = job.satellite->search.dem;
+    return bytes_of(pair.frame.map) + bytes_of(pair.frame.left) + bytes_of(pair.frame.right) +
+           bytes_of(pair.ground.nodes()) +
+           (dem ? dem->posts().size().area() * std::int64_t{sizeof(float)} : 0);
+}
+
 std::int64_t satellite_bytes(const Job& job, int threads)
 {
     const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
@@ -132,8 +141,7 @@ std::int64_t satellite_bytes(const Job& job, int threads)
         std::hypot(frame.size.rows, frame.size.cols) * frame.gsd_m / cell_m(job);
     const int cells = static_cast<int>(std::min(side, 1e9)) + 1;
     return std::max({dsm_bytes(frame.gsd_m, cell_m(job), threads),
-                     job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells}),
-                     search_bytes(job)});
+                     job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells})});
 }
 
 std::int64_t satellite_output_bytes(const Job& job)

@@ -19,6 +19,9 @@ MatchedPair matched_pair(const Job& job);
 /// Heights and DSM of a raw pair from its finished disparities and confidences.
 DsmSummary write_satellite_heights(const Job& job);
 
+/// What the geometry and the reference DEM of a raw pair hold as long as the run lasts.
+std::int64_t held_bytes(const Job& job);
+
 /// What heights, DSM and its shading take at most with this many threads.
 std::int64_t satellite_bytes(const Job& job, int threads);
 

@@ -48,6 +48,16 @@ void SceneCameras::validate() const
     require(base_m >= -500 && base_m <= 9000, "base_m", base_m, "-500 to 9000");
     validate_view(left, "left");
     validate_view(right, "right");
+    if (ortho) {
+        require(ortho->dem_post_cells >= 16 && ortho->dem_post_cells <= 1024 &&
+                    ortho->dem_post_cells % 16 == 0,
+                "ortho.dem_post_cells", ortho->dem_post_cells,
+                "whole multiples of 16, from 16 to 1024");
+        require(ortho->dem_error_m >= 0 && ortho->dem_error_m <= 100, "ortho.dem_error_m",
+                ortho->dem_error_m, "0 to 100");
+        require(!ortho->plane_m || (*ortho->plane_m >= -500 && *ortho->plane_m <= 9000),
+                "ortho.plane_m", ortho->plane_m.value_or(0), "-500 to 9000");
+    }
 }
 
 OrbitCamera::OrbitCamera(const SceneCameras& cameras, const OrbitView& view, tiling::Size map,

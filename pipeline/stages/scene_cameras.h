@@ -5,6 +5,7 @@
 #include "pipeline/synth/terrain.h"
 #include "tiling/rect.h"
 
+#include <optional>
 #include <string>
 
 namespace hsgm::pipeline {
@@ -21,6 +22,15 @@ struct OrbitView {
     bool operator==(const OrbitView&) const = default;
 };
 
+/// Orthoimages to be made of a scene beside its raw images.
+struct SceneOrtho {
+    std::optional<double> plane_m; ///< above the ellipsoid: made on this plane; else on the DEM
+    int dem_post_cells = 48;       ///< between the DEM's posts; whole multiples of 16
+    double dem_error_m = 3;        ///< each post is off by up to so much
+
+    bool operator==(const SceneOrtho&) const = default;
+};
+
 /// A scene on the map, seen by two cameras on orbit. Cells of the map take the place of the
 /// left image's pixels, metres of height above the base that of disparities.
 struct SceneCameras {
@@ -32,6 +42,7 @@ struct SceneCameras {
     double pixel_m = 0.5;
     OrbitView left{0.15, 0.05, 0, 0, 0};
     OrbitView right{-0.15, -0.02, 0, 0, 0};
+    std::optional<SceneOrtho> ortho;
 
     /// Throws std::invalid_argument naming the key, its value and what is allowed.
     void validate() const;

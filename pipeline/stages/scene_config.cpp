@@ -125,6 +125,13 @@ void read(ConfigSection section, OrbitView& view)
     view.written_row_px = section.number("written_row_px", view.written_row_px);
 }
 
+void read(ConfigSection section, SceneOrtho& ortho)
+{
+    ortho.plane_m = section.optional_number("plane_m");
+    ortho.dem_post_cells = section.integer("dem_post_cells", ortho.dem_post_cells);
+    ortho.dem_error_m = section.number("dem_error_m", ortho.dem_error_m);
+}
+
 void read(ConfigSection section, SceneCameras& c)
 {
     c.crs = section.text("crs", c.crs);
@@ -135,6 +142,9 @@ void read(ConfigSection section, SceneCameras& c)
     c.pixel_m = section.number("pixel_m", c.pixel_m);
     read(section.section("left"), c.left);
     read(section.section("right"), c.right);
+    if (section.has("ortho")) {
+        read(section.section("ortho"), c.ortho.emplace());
+    }
 }
 
 tiling::Size read_size(ConfigSection& section, tiling::Size size)

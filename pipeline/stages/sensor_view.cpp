@@ -15,28 +15,43 @@ namespace {
 constexpr int kReducedPx = 2048;
 constexpr int kSmallPx = 640;
 
-geometry::RpcCamera corrected_camera(const io::RasterSource& source, const SensorImage& sensor)
+tiling::Size size_of(const geometry::SensorModel& model, const io::RasterSource& source)
 {
-    const geometry::RpcCamera camera = open_camera(source, sensor.image.rpc);
-    return geometry::RpcCamera(camera.model(), sensor.correction);
+    return model.ortho() == nullptr ? source.size() : model.ortho()->levelled_size();
 }
 
 } // namespace
 
-SensorView::SensorView(const SensorImage& sensor)
-    : SensorView(sensor, io::RasterSource(sensor.image))
+geometry::SensorModel open_sensor(const io::RasterSource& source, const io::ImageSpec& image,
+                                  const PairGeometryOptions& options)
+{
+    return options.ortho ? geometry::SensorModel(open_ortho(source, image, *options.ortho))
+                         : geometry::SensorModel(open_camera(source, image.rpc).model());
+}
+
+SensorView::SensorView(const SensorImage& sensor, const PairGeometryOptions& options)
+    : SensorView(sensor, options, io::RasterSource(sensor.image))
 {
 }
 
-SensorView::SensorView(const SensorImage& sensor, const io::RasterSource& source)
-    : sensor_(sensor), size_(source.size()), camera_(corrected_camera(source, sensor))
+SensorView::SensorView(const SensorImage& sensor, const PairGeometryOptions& options,
+                       const io::RasterSource& source)
+    : sensor_(sensor),
+      model_(open_sensor(source, sensor.image, options).model(), sensor.correction),
+      warp_(options.ortho ? warp_of(model_, *options.ortho) : nullptr)
 {
+    size_ = size_of(model_, source);
 }
 
 void SensorView::correct(const geometry::ImageCorrection& more)
 {
-    camera_ =
-        geometry::RpcCamera(camera_.model(), geometry::joined(camera_.correction(), more));
+    model_ = model_.corrected(more);
+}
+
+ResampledSource SensorView::resampled(const geometry::Lattice& sensor_from_frame,
+                                      tiling::Size frame) const
+{
+    return {io::RasterSource(sensor_.image), sensor_from_frame, frame, warp_};
 }
 
 void SensorView::reduce(int factor)
@@ -54,16 +69,10 @@ void SensorView::reduce(int factor)
     }
 }
 
-geometry::RpcCamera SensorView::reduced_camera() const
+tiling::Size SensorView::reduced_size() const
 {
-    // An affine function of the coarse point that does what that of the fine point does.
-    geometry::ImageCorrection correction = camera_.correction();
-    const double middle = (factor_ - 1) / 2.0;
-    const double x_px = correction.x_px + (correction.x_by_x + correction.x_by_y) * middle;
-    const double y_px = correction.y_px + (correction.y_by_x + correction.y_by_y) * middle;
-    correction.x_px = x_px / factor_;
-    correction.y_px = y_px / factor_;
-    return geometry::RpcCamera(geometry::reduced(camera_.model(), factor_), correction);
+    const geometry::SensorModel model = model_.reduced(factor_);
+    return model.ortho() == nullptr ? reduced_.size() : model.ortho()->levelled_size();
 }
 
 int reduction_of(tiling::Size size)
@@ -72,17 +81,28 @@ int reduction_of(tiling::Size size)
     return std::max(tiling::ceil_div(side, kReducedPx), side > kSmallPx ? 2 : 1);
 }
 
-tiling::Image<double> draw(const tiling::Image<double>& image,
-                           const geometry::Lattice& sensor_from_frame, tiling::Size frame)
+tiling::Image<double> SensorView::draw_reduced(const geometry::Lattice& sensor_from_frame,
+                                               tiling::Size frame) const
 {
-    const geometry::Resampler resampler(sensor_from_frame, image.size(),
-                                        geometry::Kernel::lanczos);
+    geometry::PlaceInSource place;
+    if (warp_) {
+        place = [this](geometry::ImagePoint coarse) {
+            const double middle = (factor_ - 1) / 2.0;
+            const geometry::ImagePoint fine =
+                warp_->source_of({coarse.x * factor_ + middle, coarse.y * factor_ + middle});
+            return geometry::ImagePoint{(fine.x - middle) / factor_,
+                                        (fine.y - middle) / factor_};
+        };
+    }
+    const geometry::Resampler resampler(sensor_from_frame, reduced_.size(),
+                                        geometry::Kernel::lanczos, place);
     tiling::Image<double> result(frame);
     resampler.resample(
         rect_of(frame),
-        [&image](const tiling::Rect& window, tiling::ImageView<double> pixels) {
+        [this](const tiling::Rect& window, tiling::ImageView<double> pixels) {
             for (int r = 0; r < window.rows; ++r) {
-                std::copy_n(image.row(window.row + r) + window.col, window.cols, pixels.row(r));
+                std::copy_n(reduced_.row(window.row + r) + window.col, window.cols,
+                            pixels.row(r));
             }
         },
         result);

@@ -3,7 +3,6 @@
 #include "io/error.h"
 #include "io/pending_file.h"
 #include "pipeline/geometry/error.h"
-#include "pipeline/stages/camera_stage.h"
 
 #include <fmt/format.h>
 
@@ -34,30 +33,32 @@ std::string text_of(const std::string& path)
 }
 
 geometry::ImageCorrection correction_of(const io::ImageSpec& image,
+                                        const PairGeometryOptions& search,
                                         const geometry::PairGeometry& stored,
                                         const std::string& path)
 {
     const io::RasterSource source(image);
-    const geometry::RpcModel model = open_camera(source, image.rpc).model();
-    for (const geometry::RpcCamera* camera : {&stored.left, &stored.right}) {
-        if (camera->model() == model) {
-            return camera->correction();
+    const geometry::SensorModel model = open_sensor(source, image, search);
+    for (const geometry::SensorModel* other : {&stored.left, &stored.right}) {
+        if (same_sensor(model, *other)) {
+            return other->correction();
         }
     }
     throw io::InputError(
-        fmt::format("geometry.pointing_from: {} has no corrections for {}: the "
-                    "RPC of neither of its images is the same",
+        fmt::format("geometry.pointing_from: {} has no corrections for {}: neither "
+                    "of its images was taken in the same way",
                     path, source.description()));
 }
 
-void check_model(const io::ImageSpec& image, const geometry::RpcCamera& stored,
-                 const std::string& path)
+void check_model(const io::ImageSpec& image, const PairGeometryOptions& search,
+                 const geometry::SensorModel& stored, const std::string& path)
 {
     const io::RasterSource source(image);
-    if (!(open_camera(source, image.rpc).model() == stored.model())) {
-        throw io::InputError(fmt::format("{} is the geometry of other images: the RPC of {} is "
-                                         "not the one that it was found with",
-                                         path, source.description()));
+    if (!same_sensor(open_sensor(source, image, search), stored)) {
+        throw io::InputError(fmt::format(
+            "{} is the geometry of other images: {} of {} is not the one that it was found "
+            "with",
+            path, search.ortho ? "the map or view" : "the RPC", source.description()));
     }
 }
 
@@ -67,8 +68,8 @@ geometry::PairGeometry read_geometry(const std::string& path, const Job& job)
 {
     try {
         geometry::PairGeometry pair = geometry::pair_geometry_from_json(text_of(path));
-        check_model(job.left, pair.left, path);
-        check_model(job.right, pair.right, path);
+        check_model(job.left, job.satellite->search, pair.left, path);
+        check_model(job.right, job.satellite->search, pair.right, path);
         return pair;
     } catch (const geometry::GeometryError& error) {
         throw io::InputError(fmt::format("{}: {}", path, error.what()));
@@ -80,7 +81,8 @@ read_corrections(const std::string& path, const Job& job)
 {
     try {
         const auto stored = geometry::pair_geometry_from_json(text_of(path));
-        return {correction_of(job.left, stored, path), correction_of(job.right, stored, path)};
+        return {correction_of(job.left, job.satellite->search, stored, path),
+                correction_of(job.right, job.satellite->search, stored, path)};
     } catch (const geometry::GeometryError& error) {
         throw io::InputError(fmt::format("{}: {}", path, error.what()));
     }

@@ -4,6 +4,7 @@
 #include "io/rpc_metadata.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/stages/raster_strips.h"
+#include "pipeline/stages/synth_ortho_stage.h"
 #include "pipeline/synth/hash.h"
 #include "pipeline/synth/overhead_renderer.h"
 
@@ -66,6 +67,9 @@ public:
             folder + "/truth_classes.tif", scene_.size, classes,
             [&](const Rect& part, auto out) { renderer_.classes(part, out); });
         write_seen(folder + "/truth_visible.tif");
+        if (cameras_.ortho) {
+            write_orthos(scene_, cameras_, renderer_, folder);
+        }
     }
 
     OrbitSceneSummary summary() const

@@ -22,6 +22,8 @@ struct OrbitSceneSummary {
 ///   truth_classes.tif    uint8: 0 ground, 1 object, 4 ground of low texture
 ///   truth_visible.tif    uint8: bit 0 seen in left, bit 1 in right
 ///
+/// and, where the cameras say so, orthoimages (synth_ortho_stage.h).
+///
 /// Strip by strip, on all threads that TBB lends; the files do not depend on their number.
 /// Throws io::ConfigError for a scene that is not valid, io::StorageError where the folder
 /// cannot be written.

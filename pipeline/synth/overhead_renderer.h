@@ -31,6 +31,9 @@ public:
     /// Heights that nothing passes, in metres above the base.
     DisparityBounds heights_m() const { return landscape_.bounds(); }
 
+    /// Height of the bare ground at a point of the map, in metres above the base.
+    double ground_m(double x, double y) const { return landscape_.ground().disparity(x, y); }
+
     /// Gray levels 1..full scale, 0 = nodata: a pixel is the mean of 4 x 4 rays.
     void render(const RayOfPixel& ray_of, const Camera& camera, const tiling::Rect& part,
                 tiling::ImageView<std::uint16_t> out) const;

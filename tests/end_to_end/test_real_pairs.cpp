@@ -1,6 +1,7 @@
 #include "tests/end_to_end/pairs.h"
 #include "tests/end_to_end/rasters.h"
 
+#include <cmath>
 #include <cstdlib>
 
 using namespace hsgm::tests;
@@ -66,4 +67,42 @@ TEST_CASE("a satellite pair with negative disparities is run and scored at 3 px"
     CHECK(score["evaluated_pixels"] > 700000);
     CHECK(score["density_percent"] > 80);
     CHECK(score["bad"][0]["bad_answered_percent"] < 9);
+}
+
+TEST_CASE("orthoimages of a scene give as good a DSM as its raw images")
+{
+    if (!has_data("synthetic_satellite_500m")) {
+        return;
+    }
+    const TemporaryFolder folder;
+    const std::string scene = data_folder() + "/synthetic_satellite_500m/";
+    put_bytes(folder / "rpc.yaml",
+              "pair: {left: '" + scene + "left.tif', right: '" + scene +
+                  "right.tif'}\ngeometry: {kind: rpc}\noutput: {folder: rpc}\n");
+    put_bytes(folder / "ortho.yaml",
+              "pair:\n  left: {path: '" + scene +
+                  "ortho_left.tif', view_vector: [-0.0766602, 0.1725125]}\n  right: {path: '" +
+                  scene + "ortho_right.tif', view_vector: [-0.0810479, -0.1343821]}\n" +
+                  "geometry: {kind: ortho, reference_dem: '" + scene +
+                  "ortho_refdem.tif', reference_dem_vertical: ellipsoid}\n" +
+                  "output: {folder: ortho}\n");
+    const auto score = [&](const std::string& name) {
+        hsgm_does({"run", folder / (name + ".yaml"), "-o", folder / name});
+        return json::parse(
+            hsgm_does({"evaluate", "dsm", folder / (name + "/dsm.tif"), scene + "truth_dsm.tif",
+                       "--mask", scene + "truth_visible.tif", "--mask-bits", "3", "--classes",
+                       scene + "truth_classes.tif", "--exclude-classes", "3", "--align-classes",
+                       "0", "--json"})
+                .out);
+    };
+    const json rpc = score("rpc");
+    const json ortho = score("ortho");
+    CAPTURE(rpc.dump(1), ortho.dump(1));
+    CHECK(ortho["nmad_m"] <= 1.1 * rpc["nmad_m"].get<double>());
+    CHECK(ortho["completeness_percent"] >= 0.9 * rpc["completeness_percent"].get<double>());
+    CHECK(ortho["within"][1]["percent"] >= 93);
+    // They were made with the true RPCs: nothing is shifted.
+    CHECK(std::abs(ortho["shift"]["east_m"].get<double>()) < 0.05);
+    CHECK(std::abs(ortho["shift"]["north_m"].get<double>()) < 0.05);
+    CHECK(std::abs(ortho["shift"]["up_m"].get<double>()) < 0.05);
 }

@@ -125,11 +125,11 @@ TEST_CASE("raw pairs that make no DSM are refused in one sentence")
          "the stored geometry cannot be read");
     says(place.run("r", {"--set", "geometry.kind=rectified", "--set",
                          "matcher.disparity=[0, 9]", "--set", "dsm.gsd_m=1"}),
-         2, "'dsm.gsd_m' is for geometry kind rpc only");
+         2, "'dsm.gsd_m' is for geometry kind rpc or ortho only");
     says(
         place.run("r", {"--set", "geometry.kind=rectified", "--set", "matcher.disparity=[0, 9]",
                         "--set", "pair.left={path: scene/left.tif, rpc: x_RPC.TXT}"}),
-        2, "'pair.left.rpc' is for geometry kind rpc only");
+        2, "'pair.left.rpc' is for geometry kind rpc or ortho only");
     says(place.run("r", {"--set", "pair.left={path: scene/left.tif, rpc: none_RPC.TXT}"}), 3,
          "none_RPC.TXT");
     CHECK_FALSE(std::filesystem::exists(place / "r"));

@@ -280,11 +280,3 @@ TEST_CASE("corrections that one run found serve another, whichever image is the 
     says(place.run("r", {"--set", "geometry.pointing_from=run.yaml"}), 3,
          "the stored geometry cannot be read");
 }
-
-TEST_CASE("the search for a pair's geometry is part of the memory that a run may take")
-{
-    const RawPlace place;
-    says(place.run("r", {"--memory", "150MiB"}), 4, "to find the geometry of ");
-    says(place.run("r", {"--memory", "150MiB"}), 4, "but the run may take 150 MiB");
-    CHECK_FALSE(std::filesystem::exists(place / "r"));
-}
