@@ -6,6 +6,7 @@
 #include "pipeline/geometry/tie_points.h"
 #include "pipeline/stages/geometry_start.h"
 #include "pipeline/stages/given_heights.h"
+#include "pipeline/stages/patch_ties.h"
 #include "pipeline/stages/quick_match.h"
 #include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/resampled_source.h"
@@ -41,10 +42,6 @@ using tiling::Size;
 /// Features are sought in images of at most about that size.
 constexpr int kFeaturePx = 1024;
 constexpr int kCoarseFeatures = 4000;
-/// Patches at full resolution from which the pointing is found.
-constexpr int kPatchPx = 512;
-constexpr int kPatchesAcross = 4;
-constexpr int kPatchFeatures = 2000;
 /// How much wider than the tie points the reduced images are searched, at least.
 constexpr double kSearchDownM = 50;
 constexpr double kSearchUpM = 100;
@@ -104,7 +101,6 @@ private:
     HeightSpan widened(HeightSpan heights) const;
     int feature_reduction() const;
     void find_pointing();
-    std::vector<TiePoint> patch_points(const EpipolarFrame& frame) const;
     PairGeometry finish();
 
     SensorView left_;
@@ -330,44 +326,10 @@ void Search::find_heights()
                                     heights_.low_m, heights_.high_m));
 }
 
-/// Features of patches at full resolution, evenly spread over the frame.
-std::vector<TiePoint> Search::patch_points(const EpipolarFrame& frame) const
-{
-    ResampledSource left = left_.resampled(frame.left, frame.size);
-    ResampledSource right = right_.resampled(frame.right, frame.size);
-    const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
-                       1.5 * feature_reduction() + 1};
-    const auto patches_of = [](int extent) {
-        return std::clamp((extent + kPatchPx / 2) / kPatchPx, 1, kPatchesAcross);
-    };
-    const int down = patches_of(frame.size.rows);
-    const int across = patches_of(frame.size.cols);
-    std::vector<TiePoint> points;
-    for (int i = 0; i < down * across; ++i) {
-        const int row = (2 * (i / across) + 1) * frame.size.rows / (2 * down) - kPatchPx / 2;
-        const int col = (2 * (i % across) + 1) * frame.size.cols / (2 * across) - kPatchPx / 2;
-        const Rect here = intersect({row, col, kPatchPx, kPatchPx}, rect_of(frame.size));
-        const Rect there = intersect(
-            expand(right_reach(here, {static_cast<int>(std::floor(gate.disparity_min_px)),
-                                      static_cast<int>(std::ceil(gate.disparity_max_px))}),
-                   static_cast<int>(gate.row_tolerance_px) + 16),
-            rect_of(frame.size));
-        Image<double> a(here.size());
-        Image<double> b(there.size());
-        left.read(here, a);
-        right.read(there, b);
-        const auto found =
-            geometry::match_features({here.row, here.col, a.view()},
-                                     {there.row, there.col, b.view()}, gate, kPatchFeatures);
-        points.insert(points.end(), found.begin(), found.end());
-    }
-    return points;
-}
-
 void Search::find_pointing()
 {
     const EpipolarFrame frame = frame_at(level_m_, heights_, 1);
-    const auto points = patch_points(frame);
+    const auto points = patch_points(left_, right_, frame, 1.5 * feature_reduction() + 1);
     pointing_ =
         geometry::estimate_pointing(frame, points, right_.size(), *options_.pointing, nullptr);
     right_.correct(pointing_->correction);
