@@ -20,12 +20,13 @@ namespace {
                        errors.quote() + ".");
 }
 
-CPLStringList cog_options(const std::vector<std::string>& given)
+CPLStringList cog_options(const std::vector<std::string>& given, Overviews overviews)
 {
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
     options.SetNameValue("PREDICTOR", "YES");
-    options.SetNameValue("OVERVIEW_RESAMPLING", "AVERAGE");
+    options.SetNameValue("OVERVIEW_RESAMPLING",
+                         overviews == Overviews::mean ? "AVERAGE" : "NEAREST");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
     const char* compressions =
         GDALGetMetadataItem(GDALGetDriverByName("COG"), GDAL_DMD_CREATIONOPTIONLIST, nullptr);
@@ -63,7 +64,7 @@ void compute_statistics(const std::string& path)
 } // namespace
 
 void make_cloud_optimized(const std::string& path,
-                          const std::vector<std::string>& creation_options)
+                          const std::vector<std::string>& creation_options, Overviews overviews)
 {
     register_gdal();
     compute_statistics(path);
@@ -71,9 +72,9 @@ void make_cloud_optimized(const std::string& path,
     {
         ErrorCollector errors;
         const Dataset plain = open_raster(path);
-        Dataset copy(GDALCreateCopy(GDALGetDriverByName("COG"), file.temporary_path().c_str(),
-                                    plain.get(), FALSE, cog_options(creation_options).List(),
-                                    nullptr, nullptr));
+        Dataset copy(GDALCreateCopy(
+            GDALGetDriverByName("COG"), file.temporary_path().c_str(), plain.get(), FALSE,
+            cog_options(creation_options, overviews).List(), nullptr, nullptr));
         const bool made = copy != nullptr;
         copy.reset();
         if (!made || errors.failed()) {

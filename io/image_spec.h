@@ -16,7 +16,9 @@ struct ImageSpec {
     /// The value that means "no value"; replaces the one that the file declares. NaN here
     /// switches the declared one off.
     std::optional<double> nodata = std::nullopt;
-    /// A raster file of the same size whose zeros mark pixels without a value; may be empty.
+    /// A raster file of the same size whose zeros mark pixels without a value, or a vector file
+    /// whose polygons do: in pixels where it has no reference system, else on the map. May be
+    /// empty.
     std::string mask = "";
     /// A file with the image's camera model; empty: what the image carries or lies beside it.
     std::string rpc = "";

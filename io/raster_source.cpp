@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "io/gdal_private.h"
 #include "io/raster_channels_private.h"
+#include "io/vector_mask_private.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -33,6 +35,7 @@ struct RasterSource::State {
     ImageSpec spec;
     Dataset dataset;
     Dataset mask_file;
+    std::optional<VectorMask> mask_areas;
     std::vector<Channel> channels;      // one, or red, green and blue
     std::vector<GDALRasterBandH> masks; // a zero in any of them: no value
     std::vector<double> buffer;         // of one strip, kept between reads
@@ -60,6 +63,10 @@ void RasterSource::State::open()
 void RasterSource::State::open_mask_file()
 {
     if (spec.mask.empty()) {
+        return;
+    }
+    if (is_vector(spec.mask)) {
+        mask_areas.emplace(spec, dataset.get());
         return;
     }
     mask_file = open_raster(spec.mask);
@@ -115,9 +122,9 @@ void RasterSource::State::read_luminance(const Rect& strip, ImageView<double> re
 
 void RasterSource::State::apply_masks(const Rect& strip, ImageView<double> values)
 {
-    const auto apply = [&](GDALRasterBandH band, const std::string& path) {
+    const auto apply = [&](const auto& read_mask) {
         const ImageView<double> mask = buffer_view(strip.size(), 0, 1);
-        read_band(band, path, strip, mask);
+        read_mask(mask);
         for (int r = 0; r < strip.rows; ++r) {
             for (int c = 0; c < strip.cols; ++c) {
                 if (mask(r, c) == 0) {
@@ -126,11 +133,17 @@ void RasterSource::State::apply_masks(const Rect& strip, ImageView<double> value
             }
         }
     };
+    const auto apply_band = [&](GDALRasterBandH band, const std::string& path) {
+        apply([&](ImageView<double> mask) { read_band(band, path, strip, mask); });
+    };
     for (GDALRasterBandH band : masks) {
-        apply(band, spec.path);
+        apply_band(band, spec.path);
     }
     if (mask_file != nullptr) {
-        apply(GDALGetRasterBand(mask_file.get(), 1), spec.mask);
+        apply_band(GDALGetRasterBand(mask_file.get(), 1), spec.mask);
+    }
+    if (mask_areas) {
+        apply([&](ImageView<double> mask) { mask_areas->read(strip, mask); });
     }
 }
 
@@ -224,6 +237,10 @@ std::vector<std::string> RasterSource::files() const
             paths.emplace_back(list[i]);
         }
         CSLDestroy(list);
+    }
+    if (state_->mask_areas) {
+        const auto& files = state_->mask_areas->files();
+        paths.insert(paths.end(), files.begin(), files.end());
     }
     return paths;
 }

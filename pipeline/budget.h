@@ -16,7 +16,7 @@ struct Budget {
     int tiles_in_flight = 1;         ///< tiles read, matched or waiting to be written
     std::int64_t memory_bytes = 0;   ///< what the run may take
     std::int64_t estimate_bytes = 0; ///< the highest of the stages below, and what is held
-    std::int64_t prepare_bytes = 0;  ///< streaming both images into their pyramids
+    std::int64_t prepare_bytes = 0;  ///< geometry of a raw pair, pyramids, table of cost hmi
     std::int64_t coarse_bytes = 0;   ///< solving the coarsest level whole
     std::int64_t tiles_bytes = 0;    ///< all tiles in flight
     std::int64_t refine_bytes = 0;   ///< second pass and writing

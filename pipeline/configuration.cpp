@@ -146,6 +146,7 @@ OutputPaths output_paths(const std::filesystem::path& folder, const Job& job, bo
         outputs.dsm_confidence = folder / "dsm.confidence.tif";
         outputs.dsm_points = folder / "dsm.points.tif";
         outputs.dsm_spread = folder / "dsm.spread.tif";
+        outputs.dsm_reasons = folder / "dsm.reasons.tif";
     }
     if (geometry.height_per_px_m || job.satellite) {
         outputs.height = folder / "height.tif";
@@ -251,6 +252,11 @@ Configuration read_configuration(io::ConfigDocument& document)
     job = read_knobs(document);
     const std::string kind = geometry.text("kind", "");
     const auto disparity = matcher.range_or("disparity", "auto");
+    if (root.has("images") || root.has("pairs")) {
+        root.fail(root.has("images") ? "images" : "pairs",
+                  "is for several pairs of one area, which hsgm run alone takes, with `images` "
+                  "and without `pair`");
+    }
     job.geometry = read_geometry(geometry, kind);
     job.satellite = read_satellite(geometry, root.section("dsm"), kind);
     const auto creation_options = output.texts("creation_options");

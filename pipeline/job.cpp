@@ -7,9 +7,9 @@ namespace hsgm::pipeline {
 std::vector<std::filesystem::path> OutputPaths::files() const
 {
     std::vector<std::filesystem::path> asked;
-    for (const auto& path :
-         {disparity, confidence, reasons, height, depth, residual, dsm, dsm_confidence,
-          dsm_points, dsm_spread, hillshade, disparity_picture, hillshade_picture}) {
+    for (const auto& path : {disparity, confidence, reasons, height, depth, residual, dsm,
+                             dsm_confidence, dsm_points, dsm_spread, dsm_reasons, dsm_pairs,
+                             hillshade, disparity_picture, hillshade_picture}) {
         if (!path.empty()) {
             asked.push_back(path);
         }

@@ -45,11 +45,13 @@ struct OutputPaths {
     std::filesystem::path reasons;
     std::filesystem::path height; ///< empty: not asked for; likewise below
     std::filesystem::path depth;
-    std::filesystem::path residual; ///< of raw pairs, as are the four of the DSM
+    std::filesystem::path residual; ///< of raw pairs, as are those of the DSM
     std::filesystem::path dsm;
     std::filesystem::path dsm_confidence;
     std::filesystem::path dsm_points;
     std::filesystem::path dsm_spread;
+    std::filesystem::path dsm_reasons;
+    std::filesystem::path dsm_pairs; ///< of several pairs
     std::filesystem::path hillshade;
     std::filesystem::path disparity_picture; ///< PNG, as is hillshade_picture
     std::filesystem::path hillshade_picture;

@@ -4,6 +4,7 @@
 #include "pipeline/commands/batch_command.h"
 #include "pipeline/commands/bench_command.h"
 #include "pipeline/commands/evaluate_command.h"
+#include "pipeline/commands/fuse_command.h"
 #include "pipeline/commands/info_command.h"
 #include "pipeline/commands/match_command.h"
 #include "pipeline/commands/status_command.h"
@@ -111,6 +112,7 @@ int main(int argc, char** argv)
     hsgm::pipeline::add_run_command(app);
     hsgm::pipeline::add_plan_command(app);
     hsgm::pipeline::add_batch_command(app);
+    hsgm::pipeline::add_fuse_command(app);
     hsgm::pipeline::add_status_command(app);
     hsgm::pipeline::add_submit_command(app);
     hsgm::pipeline::add_report_command(app);

@@ -99,6 +99,9 @@ std::string first_given(const std::vector<std::string>& keys, const SatelliteOpt
         {"largest_pointing_px", a.largest_pointing_px != b.largest_pointing_px},
         {"epipolar_gsd_m", a.gsd_m != b.gsd_m},
         {"stored", !given.stored.empty()},
+        {"pointing_from", !given.pointing_from.empty()},
+        {"bounds", a.region.bounds.has_value()},
+        {"region", !a.region.file.empty()},
         {"reference_dem", given.dem.has_value()},
         {"above_dem_m", a.above_dem.has_value()},
         {"gsd_m", given.dsm_gsd_m != defaults.dsm_gsd_m},
@@ -135,6 +138,8 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
     options.dsm_gsd_m =
         dsm.number_or("gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
     options.stored = geometry.optional_path("stored").value_or("");
+    options.pointing_from = geometry.optional_path("pointing_from").value_or("");
+    options.search.region = read_region(dsm);
     const std::string crs = dsm.text("crs", "auto");
     options.search.crs = crs == "auto" ? "" : crs;
     const std::string vertical = dsm.text("vertical", "ellipsoid");
@@ -143,10 +148,11 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
         constexpr const char* kWhy = "is for geometry kind rpc or ortho only: leave it out";
         refuse(geometry,
                first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
-                            "stored", "reference_dem", "above_dem_m"},
+                            "stored", "pointing_from", "reference_dem", "above_dem_m"},
                            options),
                kWhy);
-        refuse(dsm, first_given({"gsd_m", "crs", "vertical"}, options), kWhy);
+        refuse(dsm, first_given({"gsd_m", "crs", "vertical", "bounds", "region"}, options),
+               kWhy);
         return std::nullopt;
     }
     if (kind == "ortho") {
@@ -162,10 +168,15 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
                                      "two out";
         refuse(geometry,
                first_given({"heights_m", "pointing", "largest_pointing_px", "epipolar_gsd_m",
-                            "above_dem_m"},
+                            "pointing_from", "above_dem_m"},
                            options),
                kWhy);
         refuse(dsm, first_given({"crs", "vertical"}, options), kWhy);
+    }
+    if (!options.pointing_from.empty()) {
+        refuse(geometry, first_given({"pointing", "largest_pointing_px"}, options),
+               "is what geometry.pointing_from says already: leave one of the two out");
+        options.search.pointing.reset();
     }
     check_map(dsm, options.search);
     return options;

@@ -57,10 +57,13 @@ void print_json(const SurfaceAnswer& answer, Alignment alignment)
 {
     ordered_json json;
     if (alignment != Alignment::none) {
-        json["shift"] = {
-            {"east_m", answer.shift.east},   {"north_m", answer.shift.north},
-            {"up_m", answer.shift.up},       {"horizontal_found", answer.horizontal},
-            {"cells", answer.aligned_cells}, {"rounds", answer.rounds}};
+        json["shift"] = {{"east_m", answer.shift.east},
+                         {"north_m", answer.shift.north},
+                         {"up_m", answer.shift.up},
+                         {"horizontal_found", answer.horizontal},
+                         {"cells", answer.aligned_cells},
+                         {"rounds", answer.rounds},
+                         {"weakest_slope", answer.weakest_slope}};
     }
     json.update(score_json(answer.all));
     for (const auto& [value, score] : answer.classes) {
@@ -87,8 +90,10 @@ void print_table(const SurfaceAnswer& answer, Alignment alignment)
                    answer.shift.east, answer.shift.north, answer.shift.up, answer.aligned_cells,
                    answer.rounds);
         if (alignment == Alignment::shift && !answer.horizontal) {
-            fmt::print("the ground is too flat to show a horizontal shift; only the height was "
-                       "adjusted\n");
+            fmt::print(
+                "the ground shows no horizontal shift; only the height was adjusted (where "
+                "it is flattest it slopes by {:.4f} rms, and {:g} at least is needed)\n",
+                answer.weakest_slope, evaluate::ShiftFit::kLeastSlope);
         }
         fmt::print("\n");
     }

@@ -7,6 +7,7 @@
 #include "pipeline/commands/shard_option.h"
 #include "pipeline/configuration.h"
 #include "pipeline/error.h"
+#include "pipeline/pairs/run_pairs.h"
 #include "pipeline/stages/fingerprint_stage.h"
 #include "pipeline/stages/match_stage.h"
 #include "pipeline/stages/stored_geometry.h"
@@ -42,6 +43,10 @@ and of two orthoimages, which say how they were taken, on a DEM:
   pair: {left: left.tif, right: right.tif}
   geometry: {kind: ortho, reference_dem: dem.tif}
   output: {folder: result}
+Several raw images of one area become one DSM:
+  images: {a: a.tif, b: b.tif, c: c.tif}
+  geometry: {kind: rpc}
+  output: {folder: result}
 Paths are relative to the configuration file. docs/configuration.md explains every key.)";
 
 constexpr const char* kPlanHelp = R"(Examples:
@@ -71,7 +76,7 @@ struct Loaded {
     Configuration configuration;
 };
 
-Loaded load(const Arguments& arguments)
+io::ConfigDocument read_document(const Arguments& arguments)
 {
     auto document = io::ConfigDocument::load(arguments.config);
     arguments.knobs.apply(document);
@@ -80,6 +85,12 @@ Loaded load(const Arguments& arguments)
         document.set("output.folder",
                      "'" + std::filesystem::absolute(arguments.output).string() + "'");
     }
+    return document;
+}
+
+Loaded load(const Arguments& arguments)
+{
+    auto document = read_document(arguments);
     const Configuration configuration = read_configuration(document);
     return {document, configuration};
 }
@@ -112,8 +123,34 @@ void make_folder(const std::filesystem::path& folder)
     }
 }
 
+/// Several pairs that become one DSM.
+void run_several(const Arguments& arguments)
+{
+    if (!arguments.shard.empty() || arguments.stage != "all" || arguments.take_over) {
+        throw io::ConfigError(
+            "--shard, --stage and --take-over are for one pair: run each of "
+            "several with its own configuration, and fuse them with hsgm fuse");
+    }
+    const PairList list = read_pair_list(arguments.config, arguments.knobs, arguments.output);
+    if (!arguments.dry_run) {
+        run_pairs(list, {arguments.resume || is_requeued(), arguments.restart, "info"});
+        return;
+    }
+    for (const std::string& pair : list.left_out) {
+        fmt::print("left out: {}\n", pair);
+    }
+    for (const ListedPair& pair : list.pairs) {
+        fmt::print("{}\n", pair.name);
+        print_plan(plan_job(pair.configuration.job), false);
+    }
+}
+
 void run(const Arguments& arguments)
 {
+    if (has_several_pairs(read_document(arguments))) {
+        run_several(arguments);
+        return;
+    }
     const Loaded loaded = load(arguments);
     RunManner manner = manner_of(arguments, loaded);
     Job job = loaded.configuration.job;

@@ -23,6 +23,14 @@ struct Cells {
         : height(size, kNoHeight), spread(size, kNoHeight), points(size), confidence(size)
     {
     }
+    /// Takes a cell's value away.
+    void clear(int row, int col)
+    {
+        height(row, col) = kNoHeight;
+        spread(row, col) = kNoHeight;
+        points(row, col) = 0;
+        confidence(row, col) = 0;
+    }
     tiling::Image<float> height;            ///< kNoHeight where there is no point
     tiling::Image<float> spread;            ///< root mean square of the points about it
     tiling::Image<std::uint8_t> points;     ///< that it was made from, at most 255

@@ -1,5 +1,6 @@
 #include "pipeline/evaluate/coregistration.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hsgm::evaluate {
@@ -29,16 +30,31 @@ std::optional<double> ShiftFit::up() const
     return right_[2] / static_cast<double>(cells_);
 }
 
+ShiftFit::Moments ShiftFit::moments() const
+{
+    const auto n = static_cast<double>(cells_);
+    return {normal_[0] - normal_[2] * normal_[2] / n, normal_[1] - normal_[2] * normal_[4] / n,
+            normal_[3] - normal_[4] * normal_[4] / n};
+}
+
+double ShiftFit::weakest_slope() const
+{
+    if (cells_ == 0) {
+        return 0;
+    }
+    const auto [ee, en, nn] = moments();
+    const double least = (ee + nn - std::hypot(ee - nn, 2 * en)) / 2; // eigenvalue
+    return std::sqrt(std::max(least, 0.0) / static_cast<double>(cells_));
+}
+
 std::optional<SurfaceShift> ShiftFit::shift() const
 {
-    if (cells_ < 3) {
+    if (cells_ < 3 || weakest_slope() < kLeastSlope) {
         return std::nullopt;
     }
     // The height taken out first, what is left is two by two.
     const auto n = static_cast<double>(cells_);
-    const double ee = normal_[0] - normal_[2] * normal_[2] / n;
-    const double en = normal_[1] - normal_[2] * normal_[4] / n;
-    const double nn = normal_[3] - normal_[4] * normal_[4] / n;
+    const auto [ee, en, nn] = moments();
     const double e = right_[0] - normal_[2] * right_[2] / n;
     const double nr = right_[1] - normal_[4] * right_[2] / n;
     const double determinant = ee * nn - en * en;

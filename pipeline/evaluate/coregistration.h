@@ -34,12 +34,26 @@ public:
 
     /// The shift that explains the differences best, by least squares. Nothing where the
     /// ground is too flat or slopes one way only, so that the horizontal shift is anybody's
-    /// guess: where its standard error for noise of 1 m would pass 1 m.
+    /// guess: where its standard error for noise of 1 m would pass 1 m, or where the ground
+    /// slopes by less than `kLeastSlope` in the direction in which it is flattest. (There an
+    /// error of 5 cm that goes with the slope would pass for a shift of 5 m.)
     std::optional<SurfaceShift> shift() const;
+    /// Root mean square of the slopes about their mean, m per m, in the direction in which it
+    /// is least; 0 where nothing counted.
+    double weakest_slope() const;
+    static constexpr double kLeastSlope = 0.01;
     /// The height alone: the mean of what counted; nothing where nothing did.
     std::optional<double> up() const;
 
 private:
+    /// Sums of products of slopes about their means.
+    struct Moments {
+        double ee = 0;
+        double en = 0;
+        double nn = 0;
+    };
+    Moments moments() const;
+
     double centre_m_;
     double limit_m_;
     std::int64_t cells_ = 0;

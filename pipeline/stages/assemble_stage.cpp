@@ -1,9 +1,8 @@
 #include "pipeline/stages/assemble_stage.h"
 
-#include "io/hillshade.h"
-#include "io/quicklook.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/pair_stage.h"
+#include "pipeline/stages/pictures_stage.h"
 #include "pipeline/stages/satellite_stage.h"
 #include "pipeline/stages/tile_stage.h"
 
@@ -41,32 +40,6 @@ std::string missing_in(const PlannedJob& planned, const RunLayout& layout,
                            of.shard.count, open);
     }
     return "";
-}
-
-void write_hillshade(const OutputPaths& outputs)
-{
-    io::HillshadeOptions options;
-    options.creation_options = outputs.creation_options;
-    const auto& heights = outputs.dsm.empty() ? outputs.height : outputs.dsm;
-    if (!io::write_hillshade(heights.string(), outputs.hillshade.string(), options,
-                             [] { return !stop_is_requested(); })) {
-        check_stop();
-    }
-}
-
-// Pictures for people, made from the finished rasters.
-void write_pictures(const OutputPaths& outputs)
-{
-    const auto write = [](const std::filesystem::path& raster,
-                          const std::filesystem::path& picture, io::QuicklookStyle style) {
-        if (!picture.empty()) {
-            io::QuicklookOptions options;
-            options.style = style;
-            io::write_quicklook_png(raster.string(), picture.string(), options);
-        }
-    };
-    write(outputs.disparity, outputs.disparity_picture, io::QuicklookStyle::disparity);
-    write(outputs.hillshade, outputs.hillshade_picture, io::QuicklookStyle::hillshade);
 }
 
 } // namespace
@@ -115,10 +88,10 @@ MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
         book.record("dsm", whole, [&] { summary.dsm = write_satellite_heights(planned.job); });
     }
     if (!outputs.hillshade.empty()) {
-        book.record("hillshade", whole, [&] { write_hillshade(outputs); });
+        book.record("hillshade", whole, [&] { write_hillshade_of(outputs); });
     }
     if (!outputs.disparity_picture.empty()) {
-        book.record("pictures", whole, [&] { write_pictures(outputs); });
+        book.record("pictures", whole, [&] { write_pictures_of(outputs); });
     }
     return summary;
 }

@@ -5,7 +5,10 @@
 #include "pipeline/geometry/error.h"
 #include "pipeline/geometry/tie_points.h"
 #include "pipeline/stages/geometry_start.h"
+#include "pipeline/stages/given_heights.h"
+#include "pipeline/stages/patch_ties.h"
 #include "pipeline/stages/quick_match.h"
+#include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/resampled_source.h"
 #include "pipeline/stages/sensor_view.h"
 
@@ -39,10 +42,6 @@ using tiling::Size;
 /// Features are sought in images of at most about that size.
 constexpr int kFeaturePx = 1024;
 constexpr int kCoarseFeatures = 4000;
-/// Patches at full resolution from which the pointing is found.
-constexpr int kPatchPx = 512;
-constexpr int kPatchesAcross = 4;
-constexpr int kPatchFeatures = 2000;
 /// How much wider than the tie points the reduced images are searched, at least.
 constexpr double kSearchDownM = 50;
 constexpr double kSearchUpM = 100;
@@ -59,6 +58,9 @@ constexpr double kFrameStep = 0.75;
 constexpr double kCellsOfParallax = 3;
 constexpr double kReliefTolerance = 0.02;
 constexpr double kTolerance = 0.01;
+
+/// What the frame shows round a region of interest, for the matcher's sake.
+constexpr double kRegionMarginPx = 100;
 
 /// A frame with both images drawn into it.
 struct DrawnPair {
@@ -77,23 +79,28 @@ public:
     }
 
     PairGeometry run();
+    /// Where the ground lies by the images alone.
+    HeightSpan run_for_heights();
+    /// What to add to a refusal where much of an image has no value; else empty.
+    std::string word_on_masks() const;
 
 private:
+    void begin();
     MapProjection find_map() const;
     void lay_relief(double least_cell_m);
     void smooth_relief(bool known);
     ReferenceSurface surface_at(double level_m) const;
     HeightSpan heights_over(const ReferenceSurface& surface) const;
-    geometry::Polygon region() const;
+    geometry::Polygon region(const MapProjection& output, double margin_m) const;
     FrameOptions frame_options(double level_m, HeightSpan heights, double gsd_m) const;
-    EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer) const;
+    EpipolarFrame frame_at(double level_m, HeightSpan heights, double finer,
+                           geometry::Polygon region = {}) const;
     DrawnPair draw_reduced(double level_m, HeightSpan heights, int coarser = 1) const;
     void find_rough_pointing();
     void find_heights();
     HeightSpan widened(HeightSpan heights) const;
     int feature_reduction() const;
     void find_pointing();
-    std::vector<TiePoint> patch_points(const EpipolarFrame& frame) const;
     PairGeometry finish();
 
     SensorView left_;
@@ -172,13 +179,19 @@ HeightSpan Search::heights_over(const ReferenceSurface& surface) const
             relief_->highest_m + lift + heights_.high_m - level_m_};
 }
 
-geometry::Polygon Search::region() const
+/// Convex and wider than what is wanted by `margin_m`; empty: everything.
+geometry::Polygon Search::region(const MapProjection& output, double margin_m) const
 {
-    geometry::Polygon region;
-    for (const geometry::MapPoint& corner : options_.region_deg) {
-        region.push_back(map_.forward({corner.x, corner.y, level_m_}));
+    if (options_.region.empty()) {
+        return {};
     }
-    return region;
+    geometry::Polygon corners;
+    for (const geometry::Polygon& ring : region_deg(options_.region, output)) {
+        for (const geometry::MapPoint& corner : ring) {
+            corners.push_back(map_.forward({corner.x, corner.y, level_m_}));
+        }
+    }
+    return convex_hull(std::move(corners), margin_m);
 }
 
 FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gsd_m) const
@@ -187,14 +200,15 @@ FrameOptions Search::frame_options(double level_m, HeightSpan heights, double gs
     options.gsd_m = gsd_m;
     options.below_m = std::min(heights.low_m - level_m, -1.0);
     options.above_m = std::max(heights.high_m - level_m, 1.0);
-    options.region = region();
     return options;
 }
 
-EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer) const
+EpipolarFrame Search::frame_at(double level_m, HeightSpan heights, double finer,
+                               geometry::Polygon region) const
 {
     FrameOptions how = frame_options(level_m, heights, options_.gsd_m);
     how.finer = finer;
+    how.region = std::move(region);
     return geometry::make_epipolar_frame(*left_.camera(map_), left_.size(),
                                          *right_.camera(map_), right_.size(),
                                          surface_at(level_m), how);
@@ -235,8 +249,10 @@ void Search::find_rough_pointing()
 {
     const int coarser = feature_reduction() / reduction_;
     const DrawnPair pair = draw_reduced(level_m_, heights_, coarser);
-    const TieGate gate{(heights_.low_m - level_m_) * pair.frame.px_per_m - 2,
-                       (heights_.high_m - level_m_) * pair.frame.px_per_m + 2, 0,
+    // Given heights may be too narrow: look beside them, to be able to say so.
+    const double beside_m = options_.heights ? heights_.high_m - heights_.low_m : 0;
+    const TieGate gate{(heights_.low_m - beside_m - level_m_) * pair.frame.px_per_m - 2,
+                       (heights_.high_m + beside_m - level_m_) * pair.frame.px_per_m + 2, 0,
                        options_.largest_pointing_px / feature_reduction() + 1};
     const auto points =
         geometry::match_features({0, 0, pair.left}, {0, 0, pair.right}, gate, kCoarseFeatures);
@@ -257,6 +273,9 @@ void Search::find_rough_pointing()
         rough_ = rough;
         rough_.shift_px *= reduction_;
         rough_.correction = correction;
+    }
+    if (options_.heights) {
+        warn_of_heights(*options_.heights, agreeing, pair.frame, level_m_, warnings_);
     }
     const auto bounds = geometry::bounds_of(agreeing);
     tie_heights_ = {level_m_ + bounds->min_px / pair.frame.px_per_m,
@@ -307,44 +326,10 @@ void Search::find_heights()
                                     heights_.low_m, heights_.high_m));
 }
 
-/// Features of patches at full resolution, evenly spread over the frame.
-std::vector<TiePoint> Search::patch_points(const EpipolarFrame& frame) const
-{
-    ResampledSource left = left_.resampled(frame.left, frame.size);
-    ResampledSource right = right_.resampled(frame.right, frame.size);
-    const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
-                       1.5 * feature_reduction() + 1};
-    const auto patches_of = [](int extent) {
-        return std::clamp((extent + kPatchPx / 2) / kPatchPx, 1, kPatchesAcross);
-    };
-    const int down = patches_of(frame.size.rows);
-    const int across = patches_of(frame.size.cols);
-    std::vector<TiePoint> points;
-    for (int i = 0; i < down * across; ++i) {
-        const int row = (2 * (i / across) + 1) * frame.size.rows / (2 * down) - kPatchPx / 2;
-        const int col = (2 * (i % across) + 1) * frame.size.cols / (2 * across) - kPatchPx / 2;
-        const Rect here = intersect({row, col, kPatchPx, kPatchPx}, rect_of(frame.size));
-        const Rect there = intersect(
-            expand(right_reach(here, {static_cast<int>(std::floor(gate.disparity_min_px)),
-                                      static_cast<int>(std::ceil(gate.disparity_max_px))}),
-                   static_cast<int>(gate.row_tolerance_px) + 16),
-            rect_of(frame.size));
-        Image<double> a(here.size());
-        Image<double> b(there.size());
-        left.read(here, a);
-        right.read(there, b);
-        const auto found =
-            geometry::match_features({here.row, here.col, a.view()},
-                                     {there.row, there.col, b.view()}, gate, kPatchFeatures);
-        points.insert(points.end(), found.begin(), found.end());
-    }
-    return points;
-}
-
 void Search::find_pointing()
 {
     const EpipolarFrame frame = frame_at(level_m_, heights_, 1);
-    const auto points = patch_points(frame);
+    const auto points = patch_points(left_, right_, frame, 1.5 * feature_reduction() + 1);
     pointing_ =
         geometry::estimate_pointing(frame, points, right_.size(), *options_.pointing, nullptr);
     right_.correct(pointing_->correction);
@@ -358,13 +343,17 @@ PairGeometry Search::finish()
 {
     const auto left = left_.camera(map_);
     const auto right = right_.camera(map_);
-    EpipolarFrame frame = frame_at(level_m_, heights_, kFrameStep);
-    const tiling::DisparityRange disparity{
-        static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
-        static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
     const MapProjection output =
         options_.crs.empty() ? MapProjection::from_text(map_.text(), options_.vertical)
                              : MapProjection::from_text(options_.crs, options_.vertical);
+    EpipolarFrame frame = frame_at(level_m_, heights_, kFrameStep);
+    if (!options_.region.empty()) {
+        frame = frame_at(level_m_, heights_, kFrameStep,
+                         region(output, kRegionMarginPx * frame.gsd_m));
+    }
+    const tiling::DisparityRange disparity{
+        static_cast<int>(std::floor((heights_.low_m - level_m_) * frame.px_per_m)),
+        static_cast<int>(std::ceil((heights_.high_m - level_m_) * frame.px_per_m))};
     geometry::GroundLattice ground(
         frame, *left, *right, disparity.min, disparity.max,
         [&](const geometry::MapPoint& place) { return output.forward(map_.inverse(place)); },
@@ -376,7 +365,7 @@ PairGeometry Search::finish()
             warnings_};
 }
 
-PairGeometry Search::run()
+void Search::begin()
 {
     const geometry::Overlap overlap = geometry::find_overlap(
         *left_.camera(map_), left_.size(), *right_.camera(map_), right_.size(),
@@ -398,6 +387,11 @@ PairGeometry Search::run()
     if (relief_) {
         smooth_relief(known);
     }
+}
+
+PairGeometry Search::run()
+{
+    begin();
     level_m_ = std::round((heights_.low_m + heights_.high_m) / 2);
     if (options_.pointing) {
         find_pointing();
@@ -405,16 +399,46 @@ PairGeometry Search::run()
     return finish();
 }
 
+std::string Search::word_on_masks() const
+{
+    constexpr double kMuchShare = 0.8;
+    if (std::min(left_.valid_share(), right_.valid_share()) > kMuchShare) {
+        return "";
+    }
+    return fmt::format(
+        "; {:.0f} % of the left image's and {:.0f} % of the right image's pixels "
+        "are valid, the others nodata or masked",
+        100 * left_.valid_share(), 100 * right_.valid_share());
+}
+
+HeightSpan Search::run_for_heights()
+{
+    begin();
+    return heights_;
+}
+
 } // namespace
 
 geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
                                           const PairGeometryOptions& options)
 {
+    std::string word_on_masks;
     try {
-        return Search(left, right, options).run();
+        Search search(left, right, options);
+        try {
+            return search.run();
+        } catch (const geometry::GeometryError&) {
+            word_on_masks = search.word_on_masks();
+            throw;
+        }
     } catch (const geometry::GeometryError& error) {
+        PairGeometryOptions without = options;
+        without.heights.reset();
         throw io::InputError(
-            fmt::format("{} and {}: {}", left.image.path, right.image.path, error.what()));
+            fmt::format("{} and {}: {}{}{}", left.image.path, right.image.path, error.what(),
+                        word_on_masks, word_on_heights(options.heights, [&] {
+                            return Search(left, right, without).run_for_heights();
+                        })));
     } catch (const std::invalid_argument& error) {
         throw io::ConfigError(error.what());
     }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "io/image_spec.h"
-#include "pipeline/geometry/footprint.h"
 #include "pipeline/geometry/overlap.h"
 #include "pipeline/geometry/pair_geometry.h"
 #include "pipeline/geometry/pointing.h"
 #include "pipeline/geometry/rpc_camera.h"
+#include "pipeline/region.h"
 #include "pipeline/stages/elevation_stage.h"
 #include "pipeline/stages/sensor_stage.h"
 
@@ -36,7 +36,7 @@ struct PairGeometryOptions {
     std::optional<geometry::PointingModel> pointing = geometry::PointingModel::automatic;
     double largest_pointing_px = 50; ///< how far off it may be
     double gsd_m = 0;                ///< of the frame; 0: three quarters of the images'
-    geometry::Polygon region_deg;    ///< convex: x longitude, y latitude; empty: everything
+    RegionOptions region;            ///< the ground that the frame must hold
     std::string crs;                 ///< of the ground points; empty: the UTM zone
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid
 };
@@ -56,9 +56,10 @@ geometry::MapBox ground_box(const SensorImage& left, const SensorImage& right,
 ///        -> reduced images matched -> range of heights -> frame -> features of patches at
 ///        full resolution -> pointing -> final frame, range and ground lattice
 ///
-/// Reads each image through once and patches of it again; memory does not grow with them.
-/// Throws InputError in a sentence that names the images where they make no pair, and
-/// ConfigError for a map that cannot be used.
+/// Pointing and heights are those of all that both images show; a region of interest limits the
+/// frame alone. Reads each image through once and patches of it again; memory does not grow
+/// with them. Throws InputError in a sentence that names the images
+/// where they make no pair, and ConfigError for a map that cannot be used.
 geometry::PairGeometry find_pair_geometry(const SensorImage& left, const SensorImage& right,
                                           const PairGeometryOptions& options);
 

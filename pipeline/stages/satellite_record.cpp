@@ -50,9 +50,16 @@ nlohmann::ordered_json geometry_json(const geometry::PairGeometry& pair)
 
 nlohmann::ordered_json dsm_json(const DsmSummary& dsm)
 {
+    nlohmann::ordered_json reasons;
+    for (const auto& [reason, name] : dsm::kMissingNames) {
+        if (reason != dsm::Missing::none) {
+            reasons[std::string(name)] = dsm.with_reason[static_cast<std::size_t>(reason)];
+        }
+    }
     return {{"rows", dsm.grid.size.rows}, {"cols", dsm.grid.size.cols},
             {"cell", dsm.grid.cell},      {"west", dsm.grid.west()},
-            {"north", dsm.grid.north()},  {"cells_with_value", dsm.cells_with_value}};
+            {"north", dsm.grid.north()},  {"cells_with_value", dsm.cells_with_value},
+            {"reasons", reasons}};
 }
 
 } // namespace hsgm::pipeline

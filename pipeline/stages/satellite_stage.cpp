@@ -1,15 +1,19 @@
 #include "pipeline/stages/satellite_stage.h"
 
 #include "io/hillshade.h"
+#include "io/raster_source.h"
 #include "pipeline/dsm/dsm_grid.h"
+#include "pipeline/error.h"
 #include "pipeline/geometry/map_projection.h"
 #include "pipeline/geometry/pair_geometry.h"
+#include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/stored_geometry.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace hsgm::pipeline {
@@ -26,19 +30,6 @@ double cell_m(const Job& job)
 {
     const double asked = job.satellite->dsm_gsd_m;
     return asked > 0 ? asked : dsm::cell_for(job.satellite->pair->frame.images_gsd_m);
-}
-
-DsmOptions dsm_options(const Job& job, const MapProjection& map)
-{
-    DsmOptions options;
-    options.cell_m = cell_m(job);
-    options.map_wkt = map.wkt();
-    options.map_units_per_m = map.in_metres() ? 1 : 1 / kMetresPerDegree;
-    options.metadata = provenance(job);
-    options.metadata["HSGM_MAP"] = map.name();
-    options.metadata["HSGM_HEIGHTS"] = map.height_name();
-    options.creation_options = job.outputs.creation_options;
-    return options;
 }
 
 /// Reads the reference DEM where the images lie; what is to be said of it.
@@ -63,26 +54,71 @@ std::string take_dem(Job& job)
 
 void plan_satellite(Job& job)
 {
+    SatelliteOptions& satellite = *job.satellite;
     const std::string warning = take_dem(job);
-    const std::string& stored = job.satellite->stored;
-    PairGeometry pair = stored.empty() ? find_pair_geometry({job.left, {}}, {job.right, {}},
-                                                            job.satellite->search)
-                                       : read_geometry(stored, job);
-    if (stored.empty() && !warning.empty()) {
-        pair.warnings.push_back(warning);
+    if (satellite.stored.empty()) {
+        SensorImage left{job.left, {}};
+        SensorImage right{job.right, {}};
+        if (!satellite.pointing_from.empty()) {
+            std::tie(left.correction, right.correction) =
+                read_corrections(satellite.pointing_from, job);
+        }
+        PairGeometry pair = find_pair_geometry(left, right, satellite.search);
+        if (!warning.empty()) {
+            pair.warnings.push_back(warning);
+        }
+        satellite.pair = std::make_shared<PairGeometry>(std::move(pair));
+    } else {
+        satellite.pair = std::make_shared<PairGeometry>(read_geometry(satellite.stored, job));
     }
-    job.satellite->pair = std::make_shared<PairGeometry>(std::move(pair));
-    job.disparity = job.satellite->pair->disparity;
+    job.disparity = satellite.pair->disparity;
+}
+
+DsmOptions dsm_options(const Job& job)
+{
+    const MapProjection map = MapProjection::from_text(job.satellite->pair->output_map);
+    DsmOptions options;
+    options.cells.cell_m = cell_m(job);
+    options.cells.map_units_per_m = map.in_metres() ? 1 : 1 / kMetresPerDegree;
+    if (const RegionOptions& region = job.satellite->search.region; !region.empty()) {
+        options.cells.region = region_on(region_deg(region, map), map);
+    }
+    options.map_wkt = map.wkt();
+    options.metadata = provenance(job);
+    options.metadata["HSGM_MAP"] = map.name();
+    options.metadata["HSGM_HEIGHTS"] = map.height_name();
+    options.creation_options = job.outputs.creation_options;
+    return options;
+}
+
+MatchedPair matched_pair(const Job& job)
+{
+    const PairGeometry& pair = *job.satellite->pair;
+    const OutputPaths& o = job.outputs;
+    const auto size = [](const geometry::SensorModel& model, const io::ImageSpec& image) {
+        return model.ortho() == nullptr ? io::RasterSource(image).size()
+                                        : model.ortho()->levelled_size();
+    };
+    return {o.disparity,
+            o.confidence,
+            o.reasons,
+            &pair.ground,
+            {&pair.frame, size(pair.left, job.left), size(pair.right, job.right)},
+            pair.frame.gsd_m};
 }
 
 DsmSummary write_satellite_heights(const Job& job)
 {
-    const PairGeometry& pair = *job.satellite->pair;
-    const MapProjection map = MapProjection::from_text(pair.output_map);
     const OutputPaths& o = job.outputs;
-    return write_dsm(
-        {o.disparity, o.confidence, &pair.ground, pair.frame.gsd_m}, dsm_options(job, map),
-        {o.height, o.residual, o.dsm, o.dsm_confidence, o.dsm_points, o.dsm_spread});
+    return write_dsm(matched_pair(job), dsm_options(job),
+                     {o.height,
+                      o.residual,
+                      o.dsm,
+                      o.dsm_confidence,
+                      o.dsm_points,
+                      o.dsm_spread,
+                      o.dsm_reasons,
+                      {}});
 }
 
 std::int64_t held_bytes(const Job& job)
@@ -104,20 +140,20 @@ std::int64_t satellite_bytes(const Job& job, int threads)
     const double side =
         std::hypot(frame.size.rows, frame.size.cols) * frame.gsd_m / cell_m(job);
     const int cells = static_cast<int>(std::min(side, 1e9)) + 1;
-    return std::max(dsm_bytes(frame.gsd_m, cell_m(job), threads),
-                    job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells}));
+    return std::max({dsm_bytes(frame.gsd_m, cell_m(job), threads),
+                     job.outputs.hillshade.empty() ? 0 : io::hillshade_bytes({cells, cells})});
 }
 
 std::int64_t satellite_output_bytes(const Job& job)
 {
     const geometry::EpipolarFrame& frame = job.satellite->pair->frame;
-    constexpr double kCellBytes = 4 + 4 + 1 + 1 + 1;
+    constexpr double kCellBytes = 4 + 4 + 1 + 1 + 1 + 1;
     // The DSM of a frame that lies aslant on the map is at most twice as large; and the
     // cloud-optimized one is made beside the plain one, with overviews.
     const double cells =
         static_cast<double>(frame.size.area()) * 2 * std::pow(frame.gsd_m / cell_m(job), 2);
     return frame.size.area() * 8 +
-           static_cast<std::int64_t>(cells * (kCellBytes + 4 * 4.0 / 3));
+           static_cast<std::int64_t>(cells * (kCellBytes + (4 + 1) * 4.0 / 3));
 }
 
 } // namespace hsgm::pipeline

@@ -10,6 +10,12 @@ namespace hsgm::pipeline {
 /// stored geometry that cannot be read or is of other images.
 void plan_satellite(Job& job);
 
+/// How the points of a planned pair become cells, and what their rasters say of themselves.
+DsmOptions dsm_options(const Job& job);
+
+/// A raw pair's finished match, as its outputs have it; the job's geometry must outlive it.
+MatchedPair matched_pair(const Job& job);
+
 /// Heights and DSM of a raw pair from its finished disparities and confidences.
 DsmSummary write_satellite_heights(const Job& job);
 

@@ -59,8 +59,10 @@ void SensorView::reduce(int factor)
     FileSource source{io::RasterSource(sensor_.image)};
     factor_ = factor;
     reduced_ = reduced_image(source, factor);
-    if (std::all_of(reduced_.pixels().begin(), reduced_.pixels().end(),
-                    [](double value) { return std::isnan(value); })) {
+    const auto valid = std::count_if(reduced_.pixels().begin(), reduced_.pixels().end(),
+                                     [](double value) { return !std::isnan(value); });
+    valid_share_ = static_cast<double>(valid) / static_cast<double>(reduced_.size().area());
+    if (valid == 0) {
         throw io::InputError(source.description() +
                              " has no valid pixel: everything is nodata or masked; check the "
                              "nodata value and the mask");

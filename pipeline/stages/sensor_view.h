@@ -44,6 +44,8 @@ public:
     /// The reduced image, drawn into a frame of that size.
     tiling::Image<double> draw_reduced(const geometry::Lattice& sensor_from_frame,
                                        tiling::Size frame) const;
+    /// Of the reduced copy's pixels, how many have a value; 1 before there is one.
+    double valid_share() const { return valid_share_; }
 
 private:
     SensorView(const SensorImage& sensor, const PairGeometryOptions& options,
@@ -54,6 +56,7 @@ private:
     geometry::SensorModel model_;
     std::shared_ptr<const geometry::ReliefWarp> warp_;
     int factor_ = 1;
+    double valid_share_ = 1;
     tiling::Image<double> reduced_;
 };
 

@@ -32,6 +32,24 @@ std::string text_of(const std::string& path)
     return text.str();
 }
 
+geometry::ImageCorrection correction_of(const io::ImageSpec& image,
+                                        const PairGeometryOptions& search,
+                                        const geometry::PairGeometry& stored,
+                                        const std::string& path)
+{
+    const io::RasterSource source(image);
+    const geometry::SensorModel model = open_sensor(source, image, search);
+    for (const geometry::SensorModel* other : {&stored.left, &stored.right}) {
+        if (same_sensor(model, *other)) {
+            return other->correction();
+        }
+    }
+    throw io::InputError(
+        fmt::format("geometry.pointing_from: {} has no corrections for {}: neither "
+                    "of its images was taken in the same way",
+                    path, source.description()));
+}
+
 void check_model(const io::ImageSpec& image, const PairGeometryOptions& search,
                  const geometry::SensorModel& stored, const std::string& path)
 {
@@ -53,6 +71,18 @@ geometry::PairGeometry read_geometry(const std::string& path, const Job& job)
         check_model(job.left, job.satellite->search, pair.left, path);
         check_model(job.right, job.satellite->search, pair.right, path);
         return pair;
+    } catch (const geometry::GeometryError& error) {
+        throw io::InputError(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+std::pair<geometry::ImageCorrection, geometry::ImageCorrection>
+read_corrections(const std::string& path, const Job& job)
+{
+    try {
+        const auto stored = geometry::pair_geometry_from_json(text_of(path));
+        return {correction_of(job.left, job.satellite->search, stored, path),
+                correction_of(job.right, job.satellite->search, stored, path)};
     } catch (const geometry::GeometryError& error) {
         throw io::InputError(fmt::format("{}: {}", path, error.what()));
     }

@@ -73,9 +73,16 @@ public:
             horizontal = whole.has_value();
             const SurfaceShift step = whole.value_or(SurfaceShift{0, 0, fit.up().value_or(0)});
             answer.aligned_cells = fit.cells();
+            answer.weakest_slope = fit.weakest_slope();
             answer.shift.east += step.east;
             answer.shift.north += step.north;
             answer.shift.up += step.up;
+            if (std::hypot(answer.shift.east, answer.shift.north) > furthest_m()) {
+                // It runs away; from its own place, then, and in height alone.
+                answer.shift = {};
+                horizontal = false;
+                continue;
+            }
             const double still_m = kStill * rows_.cell_m();
             if (std::hypot(step.east, step.north) < still_m && std::abs(step.up) < still_m) {
                 break;
@@ -90,6 +97,12 @@ public:
     }
 
 private:
+    double furthest_m() const
+    {
+        const tiling::Size size = rows_.size();
+        return rows_.cell_m() * std::min(size.rows, size.cols) / 4;
+    }
+
     // Over what is left when the test is moved back by `shift`.
     ShiftFit fit_left(const SurfaceShift& shift)
     {

@@ -29,6 +29,7 @@ struct SurfaceQuestion {
 struct SurfaceAnswer {
     evaluate::SurfaceShift shift; ///< of the test against the reference; zero without alignment
     bool horizontal = false;      ///< whether the ground showed it; if not, only `up` was found
+    double weakest_slope = 0;     ///< of the ground where it is flattest (`ShiftFit`)
     std::int64_t aligned_cells = 0; ///< that the last fit was made of
     int rounds = 0;
     evaluate::SurfaceScore all;
@@ -37,7 +38,8 @@ struct SurfaceAnswer {
 
 /// A surface model against a reference, files in, figures out: co-registration by Nuth and
 /// Kaeaeb (2011) in rounds, each fitted to the differences within three NMAD of their median
-/// on cells whose neighbours count, too, and slope by 45 degrees at most; then the scores.
+/// on cells whose neighbours count, too, and slope by 45 degrees at most; then the scores. A
+/// horizontal shift that passes a quarter of the reference's shorter side is none.
 /// Throws io::ConfigError for what cannot be asked, io::InputError for what cannot be read.
 SurfaceAnswer score_surface(const SurfaceQuestion& question);
 

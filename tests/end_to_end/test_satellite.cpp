@@ -1,80 +1,10 @@
 // Raw pairs with RPCs, from a scene with exact truth to a DSM.
 
-#include "tests/end_to_end/pairs.h"
-#include "tests/end_to_end/rasters.h"
-
-#include <algorithm>
+#include "tests/end_to_end/raw_place.h"
 
 using namespace hsgm::tests;
-using nlohmann::json;
 
 namespace {
-
-constexpr const char* kScene = R"(
-size: [420, 420]
-seed: 5
-bits: 11
-cameras:
-  crs: EPSG:32633
-  west: 500000
-  north: 5300000
-  cell_m: 0.5
-  base_m: 320
-  pixel_m: 0.5
-  left: {toward_east: 0.14, toward_north: 0.06, turn_deg: 3}
-  right: {toward_east: -0.17, toward_north: -0.03, turn_deg: TURN, written_col_px: 1.1, written_row_px: -1.7}
-terrain:
-  waves: # two ways, or co-registration has nothing to hold on to
-    - {amplitude_px: 6, wavelength_px: 400, direction_deg: 35}
-    - {amplitude_px: 4, wavelength_px: 300, direction_deg: 120}
-  texture: {mean: 0.4, contrast: 0.06, finest_px: 2.5, octaves: 4}
-city:
-  cell_px: 96
-  street_px: 16
-  fill: 0.75
-  height_min_px: 3
-  height_max_px: 20
-  texture: {mean: 0.42, contrast: 0.07, finest_px: 2.5, octaves: 4}
-left: {noise_gray: 5}
-right: {gain: 0.9, offset: 0.03, gamma: 1.08, noise_gray: 5}
-)";
-
-constexpr const char* kRun = "pair: {left: scene/left.tif, right: scene/right.tif}\n"
-                             "geometry: {kind: rpc}\n"
-                             "output: {folder: result}\n";
-
-/// The scene, its right image turned by so many degrees, and a configuration for it.
-class Place {
-public:
-    explicit Place(const std::string& turn_deg = "-2")
-    {
-        std::string scene = kScene;
-        scene.replace(scene.find("TURN"), 4, turn_deg);
-        put_bytes(folder_ / "scene.yaml", scene);
-        put_bytes(folder_ / "run.yaml", kRun);
-        hsgm_does({"synth", folder_ / "scene.yaml", "-o", folder_ / "scene"});
-    }
-    std::string operator/(const std::string& name) const { return folder_ / name; }
-
-    Outcome run(const std::string& result, std::vector<std::string> more = {}) const
-    {
-        more.insert(more.begin(),
-                    {"run", folder_ / "run.yaml", "-o", folder_ / result, "--threads", "2"});
-        return run_hsgm(more);
-    }
-    json score(const std::string& result) const
-    {
-        return json::parse(
-            hsgm_does({"evaluate", "dsm", folder_ / (result + "/dsm.tif"),
-                       folder_ / "scene/truth_dsm.tif", "--mask",
-                       folder_ / "scene/truth_visible.tif", "--mask-bits", "3", "--classes",
-                       folder_ / "scene/truth_classes.tif", "--align-classes", "0", "--json"})
-                .out);
-    }
-
-private:
-    TemporaryFolder folder_;
-};
 
 void check_good(const json& score)
 {
@@ -103,18 +33,11 @@ double mean_of(const std::string& raster)
     return sum / count;
 }
 
-void says(const Outcome& outcome, int code, const std::string& part)
-{
-    CAPTURE(outcome.err, part);
-    CHECK(outcome.code == code);
-    CHECK(outcome.err.find(part) != std::string::npos);
-}
-
 } // namespace
 
 TEST_CASE("two raw images with RPCs become a DSM, the same for every tiling")
 {
-    const Place place;
+    const RawPlace place;
     const Outcome first = place.run("result", {"--tile-size", "0"});
     INFO(first.err);
     REQUIRE(first.code == 0);
@@ -127,9 +50,10 @@ TEST_CASE("two raw images with RPCs become a DSM, the same for every tiling")
                 .code == 0);
     const Snapshot result = snapshot(place / "result");
     const Snapshot again = snapshot(place / "again");
-    for (const char* file : {"disparity.tif", "confidence.tif", "reasons.tif", "height.tif",
-                             "residual.tif", "dsm.tif", "dsm.confidence.tif", "dsm.points.tif",
-                             "dsm.spread.tif", "hillshade.tif", "geometry.json"}) {
+    for (const char* file :
+         {"disparity.tif", "confidence.tif", "reasons.tif", "height.tif", "residual.tif",
+          "dsm.tif", "dsm.confidence.tif", "dsm.points.tif", "dsm.spread.tif",
+          "dsm.reasons.tif", "hillshade.tif", "geometry.json"}) {
         CAPTURE(file);
         REQUIRE(result.contains(file));
         CHECK(result.at(file) == again.at(file));
@@ -155,7 +79,7 @@ TEST_CASE("two raw images with RPCs become a DSM, the same for every tiling")
 
 TEST_CASE("raw images may be swapped and turned, and maps and datums chosen")
 {
-    const Place place("178");
+    const RawPlace place("178");
     REQUIRE(place.run("turned").code == 0);
     check_good(place.score("turned"));
     REQUIRE(place
@@ -182,7 +106,7 @@ TEST_CASE("raw images may be swapped and turned, and maps and datums chosen")
 
 TEST_CASE("raw pairs that make no DSM are refused in one sentence")
 {
-    const Place place;
+    const RawPlace place;
     const std::string left = place / "scene/left.tif";
     says(place.run("r", {"--set", "pair.right=" + left}), 3, "nearly the same place");
     says(place.run("r", {"--set", "pair.right=" + place / "scene/truth_dsm.tif"}), 3,

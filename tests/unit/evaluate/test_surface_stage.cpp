@@ -107,6 +107,40 @@ TEST_CASE("a shifted surface on another grid is brought back")
     CHECK(std::abs(values(0, 0)) < 0.05);
 }
 
+TEST_CASE("relief that goes one way only shows no shift, and the fit does not run away")
+{
+    const TemporaryFolder folder;
+    // Ridges from north to south, nearly level along them; an error of 3 cm that goes with what
+    // little slope there is along them, as a slight tilt of a camera makes it.
+    const auto along = [](double y) { return 0.02 * std::sin(0.09 * y); };
+    write<float>(folder / "ridges.tif", {}, kUtm,
+                 [&](double x, double y) { return 100 + 6 * std::sin(0.11 * x) + along(y); });
+    write<float>(folder / "test.tif", {}, kUtm, [&](double x, double y) {
+        return 102 + 6 * std::sin(0.11 * (x - 0.5)) + along(y) + 0.03 * std::cos(0.09 * y);
+    });
+    SurfaceQuestion question;
+    question.inputs.reference = folder / "ridges.tif";
+    question.inputs.test = folder / "test.tif";
+    const SurfaceAnswer answer = score_surface(question);
+    CHECK_FALSE(answer.horizontal);
+    CHECK(answer.weakest_slope > 0);
+    CHECK(answer.weakest_slope < 0.002);
+    CHECK(answer.shift.north == 0);
+    CHECK(answer.shift.up == Approx(2).margin(0.1));
+    // With some relief along the ridges the shift is found.
+    const auto hills = [](double y) { return 1.5 * std::sin(0.09 * y); };
+    write<float>(folder / "ridges.tif", {}, kUtm,
+                 [&](double x, double y) { return 100 + 6 * std::sin(0.11 * x) + hills(y); });
+    write<float>(folder / "test.tif", {}, kUtm, [&](double x, double y) {
+        return 102 + 6 * std::sin(0.11 * (x - 0.5)) + hills(y);
+    });
+    const SurfaceAnswer found = score_surface(question);
+    CHECK(found.horizontal);
+    CHECK(found.weakest_slope > 0.05);
+    CHECK(found.shift.east == Approx(0.5).margin(0.02));
+    CHECK(found.shift.north == Approx(0).margin(0.02));
+}
+
 TEST_CASE("what is taken out is what was asked for")
 {
     Scene scene;
