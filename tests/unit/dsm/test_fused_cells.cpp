@@ -84,7 +84,7 @@ TEST_CASE("of two heights that disagree the surer one wins")
     }
 }
 
-TEST_CASE("a cell that one pair sees is filled; one that none sees has the furthest reason")
+TEST_CASE("a cell that one pair sees is filled, one that none sees has the furthest reason")
 {
     const FusedCells filled = fused({without(Missing::occluded), pair_of({7.0F})});
     CHECK(filled.of.cells.height(0, 0) == 7.0F);

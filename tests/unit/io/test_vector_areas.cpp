@@ -134,7 +134,7 @@ TEST_CASE("polygons on a map are brought into the image by its map")
           std::vector<double>{1, 2, 3, 4, 5, -1, -1, 8, 9, -1, -1, 12});
 }
 
-TEST_CASE("a vector mask without polygons masks nothing; one that has no way in is refused")
+TEST_CASE("a vector mask without polygons masks nothing, one that has no way in is refused")
 {
     const TemporaryFolder folder;
     make_raster(folder / "image.tif", GDT_Byte, {1, 3}, {{1, 2, 3}});
