@@ -140,7 +140,7 @@ void run_several(const Arguments& arguments)
     }
     for (const ListedPair& pair : list.pairs) {
         fmt::print("{}\n", pair.name);
-        print_plan(plan_job(pair.configuration.job), false);
+        print_plan(plan_job(pair.configuration.job), PlanReport{});
     }
 }
 
