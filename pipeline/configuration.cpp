@@ -180,6 +180,16 @@ void require_kind(const ConfigSection& section, const std::string& kind)
     }
 }
 
+// What orthoimages were made on.
+void require_base(const ConfigSection& section, const Job& job)
+{
+    if (job.satellite && job.satellite->search.ortho && !job.satellite->search.ortho->plane_m &&
+        !job.satellite->dem) {
+        section.fail("kind", "is ortho, so what the orthoimages were made on must be given: "
+                             "reference_height_m for a plane, or reference_dem");
+    }
+}
+
 // Rectified pairs need it; of raw ones the program finds it from the heights.
 tiling::DisparityRange require_disparity(const ConfigSection& section,
                                          const std::optional<std::pair<int, int>>& range,
@@ -262,6 +272,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     }
     document.refuse_unknown();
     require_kind(geometry, kind);
+    require_base(geometry, job);
     job.disparity = require_disparity(matcher, disparity, job);
     job.left = pair.image("left");
     job.right = pair.image("right");

@@ -74,18 +74,6 @@ void read_dem(ConfigSection& section, SatelliteOptions& options)
     }
 }
 
-/// What orthoimages were made on.
-OrthoBase read_base(ConfigSection& section, const SatelliteOptions& options)
-{
-    OrthoBase base;
-    base.plane_m = section.optional_number("reference_height_m", kLowestM, kHighestM);
-    if (!base.plane_m && !options.dem) {
-        section.fail("kind", "is ortho, so what the orthoimages were made on must be given: "
-                             "reference_height_m for a plane, or reference_dem");
-    }
-    return base;
-}
-
 void check_map(ConfigSection& section, const PairGeometryOptions& search)
 {
     // The automatic map is right wherever the images lie; with it, any zone shows whether the
@@ -168,7 +156,8 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
         return std::nullopt;
     }
     if (kind == "ortho") {
-        options.search.ortho = read_base(geometry, options);
+        options.search.ortho.emplace().plane_m =
+            geometry.optional_number("reference_height_m", kLowestM, kHighestM);
     }
     if (options.dem && options.search.heights) {
         geometry.fail("heights_m", "and reference_dem say both where the ground is: give "

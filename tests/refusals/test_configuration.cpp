@@ -86,8 +86,13 @@ TEST_CASE("what a configuration must say is asked for by key")
                          {"'output.folder' is missing", "a path"});
     place.refused_config(kPair + kGeometry + kOutput, {"'matcher.disparity' must be given"});
     place.refused_config(
-        kPair + kOutput + kMatcher + "geometry: {kind: ortho}\n",
-        {"bad.yaml:4:18", "'geometry.kind'", "rectified", "rpc", "not 'ortho'"});
+        kPair + kOutput + kMatcher + "geometry: {kind: orbit}\n",
+        {"bad.yaml:4:18", "'geometry.kind'", "rectified", "rpc", "ortho", "not 'orbit'"});
+    place.refused_config(
+        kPair + kOutput + "geometry: {kind: ortho}\n",
+        {"bad.yaml:3:18", "'geometry.kind' is ortho", "reference_height_m", "reference_dem"});
+    place.refused_config(kPair + kOutput + "geometry: {kind: ortho, refernce_dem: x.tif}\n",
+                         {"unknown key 'geometry.refernce_dem'", "'reference_dem'"});
     place.refused_config(kPair + kOutput + kMatcher + "geometry: {kind: rpc}\n",
                          {"bad.yaml:3:22", "'matcher.disparity' is found by the program",
                           "leave it out", "geometry.heights_m"});
