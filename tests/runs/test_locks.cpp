@@ -96,7 +96,8 @@ TEST_CASE("a process that was taken over in mid-run does no harm to the one afte
 
 TEST_CASE("a requeued job takes over from one that is frozen in the midst of a commit")
 {
-    const RunPlace place = slow_place();
+    // Many tiles, so that a commit is caught long before the last one.
+    const RunPlace place({1500, 1600}, 255);
     ::setenv("SLURM_JOB_ID", "73", 1);
     Stopped first(place, {"--shard", "0/1"}, Moment::commit);
     const auto start = std::chrono::steady_clock::now();
