@@ -45,7 +45,7 @@ enum class Fill {
 /// The defaults are those of mode `hsgm`.
 struct Options {
     Mode mode = Mode::hsgm;
-    Cost cost = Cost::census7x7;
+    Cost cost = Cost::ternary5x5;
     int paths = 8;            ///< 4, 5, 8 or 16
     int levels = 0;           ///< 1..12; 0 = auto
     int window_px = 64;       ///< multiple of 16, 16..1024

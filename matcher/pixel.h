@@ -17,6 +17,7 @@ constexpr bool is_valid(std::uint16_t pixel)
 struct Tone {
     int lo = 0;
     int hi = 255;
+    int noise = 1; ///< standard deviation in pixel values, rounded
 
     constexpr std::uint8_t operator()(std::uint16_t pixel) const
     {
@@ -25,6 +26,10 @@ struct Tone {
         }
         return static_cast<std::uint8_t>(pixel >= hi ? 255 : (pixel - lo) * 255 / (hi - lo));
     }
+    /// The difference of values that ternary bits let pass: one tone, or 0 where noise is less
+    /// than half a value, since ties say enough there.
+    constexpr int tolerance() const { return noise == 0 ? 0 : (hi - lo + 127) / 255; }
+
     bool operator==(const Tone&) const = default;
 };
 

@@ -133,7 +133,7 @@ cudaError_t compute_features(Plane<const std::uint16_t> pixels, Area image, Cost
     const CostTraits of_cost = traits(cost);
     features::CensusShape shape{of_cost.radius_rows, of_cost.radius_cols, false, 0, false};
     shape.ternary = cost == Cost::ternary5x5;
-    shape.band = shape.ternary ? (tone.hi - tone.lo + 127) / 255 : 0;
+    shape.band = shape.ternary ? tone.tolerance() : 0;
     shape.with_tone = cost == Cost::census_ad;
     return launch(features::census, blocks, features::kThreads, 0, stream, pixels, image, shape,
                   tone, result);

@@ -42,12 +42,6 @@ void write_tones(const Patch<std::uint16_t>& image, Tone tone, int plane, Featur
     }
 }
 
-// The tolerance of a census: one tone, in the values of an image.
-int tolerance(Cost cost, Tone tone)
-{
-    return cost == Cost::ternary5x5 ? (tone.hi - tone.lo + 127) / 255 : 0;
-}
-
 int census_planes(Cost cost)
 {
     return (static_cast<int>(census_bits(cost).size()) + 7) / 8;
@@ -62,7 +56,7 @@ FeaturePlanes cost_planes(const Patch<std::uint16_t>& image, Size full, const Re
     }
     const auto bits = census_bits(cost);
     if (!bits.empty()) {
-        census(image, full, bits, tolerance(cost, tone), planes);
+        census(image, full, bits, cost == Cost::ternary5x5 ? tone.tolerance() : 0, planes);
     }
     if (cost == Cost::hmi || cost == Cost::census_ad) {
         write_tones(image, tone, census_planes(cost), planes);

@@ -187,7 +187,7 @@ HWY_EXPORT(low_texture_rows);
 
 void tone_run(Tone tone, const std::uint16_t* pixels, int count, std::uint8_t* out)
 {
-    if (tone == Tone{}) {
+    if (tone.lo == 0 && tone.hi == 255) {
         HWY_DYNAMIC_DISPATCH(tones_of_bytes)(pixels, count, out);
     } else {
         HWY_DYNAMIC_DISPATCH(tones_of_words)(tone, pixels, count, out);

@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "io/raster_source.h"
+#include "matcher/noise.h"
 #include "matcher/refine.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/pixel_mapping.h"
@@ -58,6 +59,13 @@ Image<std::uint16_t> read_image(pipeline::PixelSource& source,
     return image;
 }
 
+void find_noise(BenchPair& pair)
+{
+    pair.left_tone.noise = matcher::noise_of(pair.left.view());
+    pair.right_tone.noise = matcher::noise_of(pair.right.view());
+    matcher::agree_on_noise(pair.left_tone, pair.right_tone);
+}
+
 synth::City city_of(double tallest_px)
 {
     synth::City city;
@@ -106,6 +114,7 @@ BenchPair render_pair(const std::string& name, int side_px, int disparities)
         size, [&](const Rect& part, auto out) { renderer.truth_left(part, out); });
     pair.visible = rendered<std::uint8_t>(
         size, [&](const Rect& part, auto out) { renderer.visible_left(part, out); });
+    find_noise(pair);
     return pair;
 }
 
@@ -124,6 +133,7 @@ BenchPair read_pair(const std::string& left, const std::string& right,
     histogram->fill(0);
     pair.right = read_image(right_source, mapping, *histogram);
     pair.right_tone = pipeline::find_tone(right_source.pixel_type(), *histogram);
+    find_noise(pair);
     if (pair.left.rows() != pair.right.rows()) {
         throw io::InputError(left + " and " + right +
                              " differ in height; a rectified pair has equal heights");

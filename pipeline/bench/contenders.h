@@ -23,7 +23,7 @@ struct BenchSettings {
     tiling::DisparityRange asked; ///< for given images
 
     matcher::Options options;
-    std::vector<matcher::Cost> costs{matcher::Cost::census7x7};
+    std::vector<matcher::Cost> costs{matcher::Cost::ternary5x5};
     std::vector<matcher::Instructions> instructions; ///< empty: what the matcher chooses
     std::vector<int> threads{1};
     std::vector<matcher::cuda::DeviceInfo> devices; ///< to measure beside the processor

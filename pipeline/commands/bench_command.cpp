@@ -20,10 +20,10 @@ using bench::BenchSettings;
 constexpr const char* kHelp = R"(Examples:
   hsgm bench --quick                                  some seconds: is this build as fast as it was?
   hsgm bench                                          some minutes: every cost, peer and instruction set
-  hsgm bench --side 4096 --disparities 128 --cost census7x7 --peers hh,3way
+  hsgm bench --side 4096 --disparities 128 --cost ternary5x5 --peers hh,3way
   hsgm bench --side 2048 --disparities 128,256,512 --peers hh --threads 1
   hsgm bench --instructions avx2 --peers hh --set matcher.paths=4
-  hsgm bench --device cuda --cost census7x7 --peers none --tile-size 2048
+  hsgm bench --device cuda --cost ternary5x5 --peers none --tile-size 2048
   hsgm bench left.tif right.tif --disparity 0,127 --json > bench.json
   hsgm bench --whole --peers none                     the program from files to files, too
 

@@ -24,8 +24,8 @@ constexpr const char* kHmiTable = "pair.hmi_table";
 
 std::string text_of(const PairTones& tones)
 {
-    return fmt::format("{} {} {} {}", tones.left.lo, tones.left.hi, tones.right.lo,
-                       tones.right.hi);
+    return fmt::format("{} {} {} {} {} {}", tones.left.lo, tones.left.hi, tones.left.noise,
+                       tones.right.lo, tones.right.hi, tones.right.noise);
 }
 
 const std::string& fact(const Facts& facts, const char* name)
@@ -41,12 +41,12 @@ const std::string& fact(const Facts& facts, const char* name)
 PairTones tones_of(const Facts& facts)
 {
     const std::string& text = fact(facts, kTones);
-    std::array<int, 4> numbers{};
+    std::array<int, 6> numbers{};
     const char* at = text.data();
     for (int& number : numbers) {
         at = std::from_chars(at, text.data() + text.size(), number).ptr + 1;
     }
-    return {{numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
+    return {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
 }
 
 std::string text_of(const matcher::HmiTable& table)

@@ -1,6 +1,7 @@
 #include "pipeline/stages/prepare_stage.h"
 
 #include "io/error.h"
+#include "matcher/noise.h"
 #include "matcher/reduce.h"
 #include "pipeline/error.h"
 #include "pipeline/stages/pixel_checksum.h"
@@ -12,7 +13,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <numeric>
+#include <mutex>
 
 namespace hsgm::pipeline {
 
@@ -61,6 +62,13 @@ std::unique_ptr<PixelHistogram> copy_full_resolution(PixelSource& source,
     return histogram;
 }
 
+Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
+{
+    Patch<std::uint16_t> patch(part);
+    raster.read(part, patch.pixels.view());
+    return patch;
+}
+
 void reduce_level(const Raster& fine, Raster& coarse)
 {
     const Size size = coarse.size();
@@ -81,6 +89,30 @@ void reduce_level(const Raster& fine, Raster& coarse)
         });
 }
 
+// Strips hold whole rows of blocks, so that it does not matter how long they are.
+int find_noise(const Raster& level0)
+{
+    const Size size = level0.size();
+    const int rows =
+        matcher::kNoiseBlock * std::clamp((1 << 17) / std::max(size.cols, 1), 1, 32);
+    matcher::NoiseCounts all;
+    std::mutex adding;
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, tiling::ceil_div(size.rows, rows), 1),
+        [&](const tbb::blocked_range<int>& strips) {
+            matcher::NoiseCounts part;
+            for (int i = strips.begin(); i < strips.end(); ++i) {
+                check_stop();
+                const Patch<std::uint16_t> strip =
+                    read_part(level0, intersect({i * rows, 0, rows, size.cols}, rect_of(size)));
+                part.add(strip.pixels.view());
+            }
+            const std::lock_guard lock(adding);
+            all.add(part);
+        });
+    return all.noise();
+}
+
 matcher::Tone fill(PixelSource& source, const PixelMapping& mapping,
                    std::vector<Raster>& levels, std::string& checksum)
 {
@@ -95,14 +127,9 @@ matcher::Tone fill(PixelSource& source, const PixelMapping& mapping,
     for (std::size_t k = 1; k < levels.size(); ++k) {
         reduce_level(levels[k - 1], levels[k]);
     }
-    return find_tone(source.pixel_type(), *histogram);
-}
-
-Patch<std::uint16_t> read_part(const Raster& raster, const Rect& part)
-{
-    Patch<std::uint16_t> patch(part);
-    raster.read(part, patch.pixels.view());
-    return patch;
+    matcher::Tone tone = find_tone(source.pixel_type(), *histogram);
+    tone.noise = find_noise(levels.front());
+    return tone;
 }
 
 } // namespace
@@ -120,6 +147,7 @@ PreparedPair::PreparedPair(PixelSource& left, PixelSource& right, int levels,
     tbb::parallel_invoke(
         [&] { left_.tone = fill(left, mapping, left_.levels, checksums.left); },
         [&] { right_.tone = fill(right, mapping, right_.levels, checksums.right); });
+    matcher::agree_on_noise(left_.tone, right_.tone);
 }
 
 PreparedPair::PreparedPair(const matcher::PairShape& shape, int levels, const PairTones& tones,

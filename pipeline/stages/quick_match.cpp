@@ -1,6 +1,7 @@
 #include "pipeline/stages/quick_match.h"
 
 #include "matcher/matcher.h"
+#include "matcher/noise.h"
 #include "matcher/reduce.h"
 #include "matcher/refine.h"
 #include "pipeline/stages/pixel_mapping.h"
@@ -55,6 +56,7 @@ Pyramid pyramid(const Image<double>& values, int levels)
     (*histogram)[matcher::kNodataPixel] = 0;
     Pyramid result;
     result.tone = find_tone(io::PixelType::uint16, *histogram);
+    result.tone.noise = matcher::noise_of(pixels.view());
     result.levels.push_back(whole(std::move(pixels)));
     while (static_cast<int>(result.levels.size()) < levels) {
         const auto& fine = result.levels.back();
@@ -100,6 +102,7 @@ Image<float> quick_match(const Image<double>& left, const Image<double>& right,
     const Pyramid b = pyramid(right, levels);
     traits.left_tone = a.tone;
     traits.right_tone = b.tone;
+    matcher::agree_on_noise(traits.left_tone, traits.right_tone);
     const matcher::Matcher matcher(traits, options);
     const auto coarse = matcher.solve_coarse(a.levels.back().pixels, b.levels.back().pixels);
     std::vector<matcher::LevelImages> images;

@@ -158,7 +158,7 @@ def score_scene(scene, settings, folder, threshold=1):
 def middlebury(folder):
     print("### Table 1 of the paper: % bad > 1 px, non-occluded, missing counted as bad\n")
     columns = [("sgm", ["matcher.mode=sgm"]), ("hsgm-paper, hmi", ["matcher.mode=hsgm-paper", "matcher.cost=hmi"]),
-               ("hsgm-paper, census7x7", ["matcher.mode=hsgm-paper"]), ("hsgm", [])]
+               ("hsgm-paper, ternary5x5", ["matcher.mode=hsgm-paper"]), ("hsgm", [])]
     for title, extra in (("raw", RAW), ("with left-right check and median", [])):
         header(title, *[scene[0] for scene in CLASSICS], "mean")
         for name, settings in columns:

@@ -242,6 +242,8 @@ Case random_case(std::uint64_t seed, const Theme& theme)
         c.tone_left.lo = random.between(0, 200);
         c.tone_left.hi = c.tone_left.lo + random.between(1, 300);
     }
+    c.tone_left.noise = random.chance(25) ? 0 : random.between(1, 9);
+    c.tone_right.noise = c.tone_left.noise;
     if (o.cost == Cost::hmi) {
         c.hmi = HmiCosts({256, 256});
         for (int i = 0; i < 256; ++i) {
@@ -263,16 +265,17 @@ std::string Case::describe() const
     out << "seed " << seed << ": left " << pair.left.rows() << " x " << pair.left.cols()
         << ", right " << pair.right.cols() << " columns, asked " << asked << ", tones ["
         << tone_left.lo << ", " << tone_left.hi << "] [" << tone_right.lo << ", "
-        << tone_right.hi << "], mode " << name(options.mode) << ", cost " << name(options.cost)
-        << ", paths " << options.paths << ", levels " << options.levels << ", window "
-        << options.window_px << ", halo " << options.halo_px << ", p1 " << options.p1 << ", p2 "
-        << options.p2 << ", p2_half_tone " << options.p2_half_tone << ", prior "
-        << options.prior << ", prune " << options.prune << ", left_right_px "
-        << options.left_right_px << ", speckle_px " << options.speckle_px
-        << ", speckle_range_px " << options.speckle_range_px << ", subpixel "
-        << name(options.subpixel) << ", min_confidence " << options.min_confidence
-        << ", median " << options.median << ", smooth " << options.smooth << ", fill "
-        << name(options.fill) << ", fill_px " << options.fill_px << ", tiles";
+        << tone_right.hi << "], noise " << tone_left.noise << " and " << tone_right.noise
+        << ", mode " << name(options.mode) << ", cost " << name(options.cost) << ", paths "
+        << options.paths << ", levels " << options.levels << ", window " << options.window_px
+        << ", halo " << options.halo_px << ", p1 " << options.p1 << ", p2 " << options.p2
+        << ", p2_half_tone " << options.p2_half_tone << ", prior " << options.prior
+        << ", prune " << options.prune << ", left_right_px " << options.left_right_px
+        << ", speckle_px " << options.speckle_px << ", speckle_range_px "
+        << options.speckle_range_px << ", subpixel " << name(options.subpixel)
+        << ", min_confidence " << options.min_confidence << ", median " << options.median
+        << ", smooth " << options.smooth << ", fill " << name(options.fill) << ", fill_px "
+        << options.fill_px << ", tiles";
     for (const Rect& tile : tiles) {
         out << " " << tile;
     }
@@ -287,8 +290,8 @@ matcher::PairTraits traits_of(const Case& c)
 {
     matcher::PairTraits traits;
     traits.shape = {c.pair.left.size(), c.pair.right.size(), c.asked};
-    traits.left_tone = {c.tone_left.lo, c.tone_left.hi};
-    traits.right_tone = {c.tone_right.lo, c.tone_right.hi};
+    traits.left_tone = {c.tone_left.lo, c.tone_left.hi, c.tone_left.noise};
+    traits.right_tone = {c.tone_right.lo, c.tone_right.hi, c.tone_right.noise};
     if (c.options.cost == Cost::hmi) {
         traits.hmi = table_of(c.hmi);
     }

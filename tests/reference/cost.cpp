@@ -149,7 +149,8 @@ Image<CensusBits> census_of(const Image<std::uint16_t>& image, ToneEnds ends, Co
         case Cost::pairs_bt:
             return pairs_at(image, row, col);
         case Cost::ternary5x5:
-            return ternary_at(image, row, col, (ends.hi - ends.lo + 127) / 255);
+            return ternary_at(image, row, col,
+                              ends.noise > 0 ? (ends.hi - ends.lo + 127) / 255 : 0);
         default:
             return census_at(image, row, col, window.rows, window.cols);
         }

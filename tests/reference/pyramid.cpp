@@ -3,6 +3,9 @@
 #include "tiling/rect.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace hsgm::reference {
 
@@ -32,6 +35,53 @@ ToneEnds tone_ends(const Image<std::uint16_t>& image)
         }
     }
     return {lo, hi > lo ? hi : lo + 1};
+}
+
+namespace {
+
+/// 36 times the mean of |L| inside the block at (top, left); none where it does not count.
+std::optional<std::int64_t> roughness(const Image<std::uint16_t>& image, int top, int left)
+{
+    std::int64_t sum = 0;
+    for (int r = top; r < top + 8; ++r) {
+        for (int c = left; c < left + 8; ++c) {
+            if (image(r, c) == kNodata) {
+                return std::nullopt;
+            }
+            if (r == top || r == top + 7 || c == left || c == left + 7) {
+                continue;
+            }
+            constexpr int kWeight[3] = {1, -2, 1};
+            std::int64_t l = 0;
+            for (int i = 0; i < 3; ++i) {
+                for (int k = 0; k < 3; ++k) {
+                    l += kWeight[i] * kWeight[k] * image(r + i - 1, c + k - 1);
+                }
+            }
+            sum += l < 0 ? -l : l;
+        }
+    }
+    return sum > 0 ? std::optional(sum) : std::nullopt;
+}
+
+} // namespace
+
+int noise_of(const Image<std::uint16_t>& image)
+{
+    std::vector<int> noises;
+    for (int row = 0; row + 8 <= image.rows(); row += 8) {
+        for (int col = 0; col + 8 <= image.cols(); col += 8) {
+            if (const auto sum = roughness(image, row, col)) {
+                noises.push_back(static_cast<int>(
+                    std::min<std::int64_t>((*sum * 380 + 32768) / 65536, 4095)));
+            }
+        }
+    }
+    if (noises.empty()) {
+        return 0;
+    }
+    std::sort(noises.begin(), noises.end());
+    return noises[(noises.size() + 9) / 10 - 1];
 }
 
 Image<std::uint8_t> toned(const Image<std::uint16_t>& image, ToneEnds ends)

@@ -30,15 +30,18 @@ const T& clamped(const Image<T>& image, int row, int col)
     return image(r, c);
 }
 
-/// Section 1: the ends of an image's tone scale.
+/// Section 1: the ends of an image's tone scale, and its noise.
 struct ToneEnds {
     int lo = 0;
     int hi = 255;
+    int noise = 1;
     bool operator==(const ToneEnds&) const = default;
 };
 
 /// The ends of an image that is not 8-bit, from its valid full-resolution pixels.
 ToneEnds tone_ends(const Image<std::uint16_t>& image);
+/// Section 1: the noise of an image, which its pair may still overrule.
+int noise_of(const Image<std::uint16_t>& image);
 /// The 8-bit copy of an image.
 Image<std::uint8_t> toned(const Image<std::uint16_t>& image, ToneEnds ends);
 

@@ -1,6 +1,7 @@
 #include "tests/catch.h"
 
 #include "matcher/hmi.h"
+#include "matcher/noise.h"
 #include "matcher/reduce.h"
 #include "tests/reference/agreement.h"
 #include "tests/reference/hmi.h"
@@ -78,6 +79,35 @@ TEST_CASE("matcher and twin agree on reduced images, piece by piece")
         INFO("case " << i << ": " << size.rows << " x " << size.cols);
         REQUIRE(result == twin);
     }
+}
+
+TEST_CASE("matcher and twin agree on noise, strip by strip")
+{
+    Random random(12);
+    int noisy = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const Size size{random.between(1, 90), random.between(1, 90)};
+        PairLook look;
+        look.noise = random.chance(50);
+        look.sixteen_bit = random.chance(50);
+        look.grey_levels = random.chance(50) ? random.between(2, 20) : 0;
+        look.flat_patches = random.between(0, 4);
+        look.holes = random.between(0, 3);
+        look.lost_percent = random.one_of({0, 0, 1, 50});
+        const auto image = random_pair(random, size, size.cols, {0, 0}, look).left;
+        matcher::NoiseCounts counts;
+        for (int row = 0; row < size.rows;) {
+            const int rows =
+                std::min(matcher::kNoiseBlock * random.between(1, 4), size.rows - row);
+            counts.add(image.view().part({row, 0, rows, size.cols}));
+            row += rows;
+        }
+        INFO("case " << i << ": " << size.rows << " x " << size.cols);
+        REQUIRE(counts.noise() == noise_of(image));
+        noisy += counts.noise() > 0 ? 1 : 0;
+    }
+    CHECK(noisy > 300);
+    CHECK(noisy < 1400);
 }
 
 TEST_CASE("matcher and twin agree on tones")

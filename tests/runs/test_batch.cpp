@@ -110,7 +110,7 @@ TEST_CASE("manifests name pairs and what each has of its own")
     archive.run_to(0, "pairs.csv");
     CHECK_THAT(archive.text("results/other, wide/config.used.yaml"),
                Contains("census5x5") && Contains("20"));
-    CHECK_THAT(archive.text("results/plain/config.used.yaml"), Contains("census7x7"));
+    CHECK_THAT(archive.text("results/plain/config.used.yaml"), Contains("ternary5x5"));
     CHECK_THAT(archive.text("results/summary.csv"), Contains("\"other, wide\",done,0,"));
     put_bytes(archive.at("pairs.yaml"),
               "pairs:\n"

@@ -43,9 +43,9 @@ TEST_CASE("a run whose configuration has changed is not resumed, and says what d
     const Unfinished run;
     run.refused({"--resume", "--set", "matcher.p2=160"},
                 {"cannot be resumed", "matcher.p2: 192 before, 160 now", "--restart"});
-    run.refused(
-        {"--resume", "--set", "matcher.cost=census5x5", "--set", "matcher.median=off"},
-        {"matcher.cost: census7x7 before, census5x5 now", "matcher.median: 3 before, off now"});
+    run.refused({"--resume", "--set", "matcher.cost=census5x5", "--set", "matcher.median=off"},
+                {"matcher.cost: ternary5x5 before, census5x5 now",
+                 "matcher.median: 3 before, off now"});
     run.refused({"--resume", "--set", "geometry.height_per_px_m=0.5"},
                 {"geometry.height_per_px_m: absent before, 0.5 now"});
     run.place.run_to(

@@ -81,7 +81,7 @@ TEST_CASE("a mode that never prunes has no contender without pruning")
 {
     BenchSettings settings;
     settings.options.mode = matcher::Mode::sgm;
-    CHECK(titles(contenders(settings)) == std::vector<std::string>{"sgm census7x7 x1"});
+    CHECK(titles(contenders(settings)) == std::vector<std::string>{"sgm ternary5x5 x1"});
     settings.options.mode = matcher::Mode::hsgm;
     settings.options.prune = false;
     CHECK(contenders(settings).size() == 1);
