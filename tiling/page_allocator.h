@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <utility>
@@ -28,16 +29,20 @@ public:
     T* allocate(std::size_t count)
     {
         const std::size_t bytes = count * sizeof(T);
-        const std::size_t alignment = bytes >= 2 * kLargePage ? kLargePage : kAlignment;
-        void* memory =
-            std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+        // Not aligned to large pages: glibc finds no freed block again for such a wish, and the
+        // heap would grow from tile to tile.
+        void* memory = std::aligned_alloc(kAlignment, rounded_up(bytes, kAlignment));
         if (memory == nullptr) {
             throw std::bad_alloc();
         }
 #ifdef __linux__
-        if (alignment == kLargePage) {
-            // Whole pages alone: no more memory than was asked for. A refusal costs time only.
-            madvise(memory, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
+        // Whole large pages inside alone: no more memory than was asked for. A refusal costs
+        // time only.
+        const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+        const std::uintptr_t first = rounded_up(begin, kLargePage);
+        const std::uintptr_t end = (begin + bytes) / kLargePage * kLargePage;
+        if (end > first) {
+            madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
         }
 #endif
         return static_cast<T*>(memory);
@@ -64,6 +69,11 @@ public:
     }
 
 private:
+    static constexpr std::size_t rounded_up(std::size_t value, std::size_t step)
+    {
+        return (value + step - 1) / step * step;
+    }
+
     static constexpr std::size_t kAlignment = 128;
     static constexpr std::size_t kLargePage = std::size_t{2} << 20;
 };

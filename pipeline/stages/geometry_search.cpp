@@ -312,14 +312,25 @@ void Search::find_heights()
         const double step_m = 1 / (pair.frame.px_per_m * reduction_);
         const HeightSpan seen{level_m + found->min_px / pair.frame.px_per_m,
                               level_m + found->max_px / pair.frame.px_per_m};
-        const bool ends = found->max_px > reach - 2 || found->min_px < -reach + 2;
-        heights_ = {seen.low_m - (4 + 2 * reduction_) * step_m,
-                    seen.high_m + (4 + 3 * reduction_) * step_m};
-        if (!ends) {
+        const bool ends_low = found->min_px < -reach + 2;
+        const bool ends_high = found->max_px > reach - 2;
+        if (ends_low && ends_high) { // ground does not: tie points would have told
+            heights_ = search;
+            warnings_.push_back(fmt::format(
+                "the reduced images match at all heights, which is what clouds and "
+                "repeated patterns do; looking for ground at {:.0f} to {:.0f} m, as "
+                "tie points say; geometry.heights_m can say better",
+                search.low_m, search.high_m));
             return;
         }
-        search = {search.low_m - (search.high_m - search.low_m) / 2,
-                  search.high_m + (search.high_m - search.low_m) / 2};
+        heights_ = {seen.low_m - (4 + 2 * reduction_) * step_m,
+                    seen.high_m + (4 + 3 * reduction_) * step_m};
+        if (!ends_low && !ends_high) {
+            return;
+        }
+        const double more_m = search.high_m - search.low_m;
+        search.low_m -= ends_low ? more_m : 0;
+        search.high_m += ends_high ? more_m : 0;
     }
     warnings_.push_back(fmt::format("the range of heights is very wide, {:.0f} to {:.0f} m: "
                                     "clouds, or heights should be given",
