@@ -1,5 +1,7 @@
 #include "pipeline/freed_memory.h"
 
+#include "tiling/page_store.h"
+
 #include <limits>
 
 #ifdef __GLIBC__
@@ -25,6 +27,7 @@ void give_back_freed_memory()
 #ifdef __GLIBC__
     malloc_trim(0);
 #endif
+    tiling::release_free_pages();
 }
 
 } // namespace hsgm::pipeline

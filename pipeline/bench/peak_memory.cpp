@@ -1,5 +1,7 @@
 #include "pipeline/bench/peak_memory.h"
 
+#include "tiling/page_store.h"
+
 #include <malloc.h>
 
 #include <algorithm>
@@ -41,6 +43,7 @@ std::optional<std::int64_t> number_in(const char* path)
 PeakMemoryWatch::PeakMemoryWatch()
 {
     malloc_trim(0);
+    tiling::release_free_pages();
     std::ofstream marks("/proc/self/clear_refs");
     marks << "5";
     marks.flush();

@@ -14,11 +14,23 @@ constexpr std::size_t kLeastPixels = 200;
 constexpr double kPixelsLeftOut = 0.0005;
 constexpr int kLeastFriends = 5;
 
+// Between neighbours of sorted values.
+double widest_gap(const std::vector<double>& values, std::size_t first, std::size_t last)
+{
+    double widest = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        widest = std::max(widest, values[i + 1] - values[i]);
+    }
+    return widest;
+}
+
 DisparityBounds inner(std::vector<double>& values, double left_out)
 {
     std::sort(values.begin(), values.end());
     const auto skip = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
-    return {values[skip], values[values.size() - 1 - skip]};
+    const std::size_t last = values.size() - 1 - skip;
+    return {values[skip], values[last], widest_gap(values, skip, values.size() / 4),
+            widest_gap(values, values.size() - 1 - values.size() / 4, last)};
 }
 
 int friends(tiling::ImageView<const float> d, int row, int col)

@@ -12,6 +12,10 @@ namespace hsgm::geometry {
 struct DisparityBounds {
     double min_px = 0;
     double max_px = 0;
+    /// The widest gap between values of the lowest quarter, and of the highest: ground has
+    /// hardly any, what clouds and repeated patterns match at has.
+    double low_gap_px = 0;
+    double high_gap_px = 0;
 };
 
 /// What the bulk of the tie points spans: all but the 2 % lowest and highest, so that a few

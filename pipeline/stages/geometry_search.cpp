@@ -6,8 +6,8 @@
 #include "pipeline/geometry/tie_points.h"
 #include "pipeline/stages/geometry_start.h"
 #include "pipeline/stages/given_heights.h"
+#include "pipeline/stages/height_search.h"
 #include "pipeline/stages/patch_ties.h"
-#include "pipeline/stages/quick_match.h"
 #include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/resampled_source.h"
 #include "pipeline/stages/sensor_view.h"
@@ -22,7 +22,6 @@ namespace hsgm::pipeline {
 
 namespace {
 
-using geometry::DisparityBounds;
 using geometry::EpipolarFrame;
 using geometry::FrameOptions;
 using geometry::FramePatch;
@@ -45,9 +44,6 @@ constexpr int kCoarseFeatures = 4000;
 /// How much wider than the tie points the reduced images are searched, at least.
 constexpr double kSearchDownM = 50;
 constexpr double kSearchUpM = 100;
-constexpr int kSearches = 4;
-/// Wrong matches that pass the left-right check rarely have more; right ones mostly do.
-constexpr int kLeastConfidence = 160;
 
 /// Step of the frame that is matched, of the images' ground sampling distance: a finer grid
 /// than theirs makes the errors of fractions of a pixel smaller on the ground
@@ -61,13 +57,6 @@ constexpr double kTolerance = 0.01;
 
 /// What the frame shows round a region of interest, for the matcher's sake.
 constexpr double kRegionMarginPx = 100;
-
-/// A frame with both images drawn into it.
-struct DrawnPair {
-    EpipolarFrame frame;
-    Image<double> left;
-    Image<double> right;
-};
 
 class Search {
 public:
@@ -290,51 +279,16 @@ HeightSpan Search::widened(HeightSpan span) const
             std::min(span.high_m + std::max(kSearchUpM, rise), possible.high_m)};
 }
 
-/// The reduced images, matched; wider where the search ends in the middle of something.
 void Search::find_heights()
 {
-    HeightSpan search = widened(tie_heights_);
-    for (int i = 0; i < kSearches; ++i) {
-        const double level_m = (search.low_m + search.high_m) / 2;
-        const DrawnPair pair = draw_reduced(level_m, search);
-        const auto reach = static_cast<int>(
-            std::ceil((search.high_m - search.low_m) / 2 * pair.frame.px_per_m));
-        const Image<float> map =
-            quick_match(pair.left, pair.right, {-reach, reach}, kLeastConfidence);
-        const auto found = geometry::bounds_of(map.view());
-        if (!found) {
-            warnings_.emplace_back("the reduced images could not be matched; the range of "
-                                   "heights comes from tie points alone");
-            heights_ = widened(tie_heights_);
-            return;
-        }
-        // What the reduced images are too coarse for: a tower of two of their pixels.
-        const double step_m = 1 / (pair.frame.px_per_m * reduction_);
-        const HeightSpan seen{level_m + found->min_px / pair.frame.px_per_m,
-                              level_m + found->max_px / pair.frame.px_per_m};
-        const bool ends_low = found->min_px < -reach + 2;
-        const bool ends_high = found->max_px > reach - 2;
-        if (ends_low && ends_high) { // ground does not: tie points would have told
-            heights_ = search;
-            warnings_.push_back(fmt::format(
-                "the reduced images match at all heights, which is what clouds and "
-                "repeated patterns do; looking for ground at {:.0f} to {:.0f} m, as "
-                "tie points say; geometry.heights_m can say better",
-                search.low_m, search.high_m));
-            return;
-        }
-        heights_ = {seen.low_m - (4 + 2 * reduction_) * step_m,
-                    seen.high_m + (4 + 3 * reduction_) * step_m};
-        if (!ends_low && !ends_high) {
-            return;
-        }
-        const double more_m = search.high_m - search.low_m;
-        search.low_m -= ends_low ? more_m : 0;
-        search.high_m += ends_high ? more_m : 0;
+    HeightSearch found =
+        search_heights(widened(tie_heights_), reduction_, [&](double level_m, HeightSpan span) {
+            return draw_reduced(level_m, span);
+        });
+    heights_ = found.heights;
+    if (!found.warning.empty()) {
+        warnings_.push_back(std::move(found.warning));
     }
-    warnings_.push_back(fmt::format("the range of heights is very wide, {:.0f} to {:.0f} m: "
-                                    "clouds, or heights should be given",
-                                    heights_.low_m, heights_.high_m));
 }
 
 void Search::find_pointing()

@@ -21,6 +21,7 @@ using Paint = std::function<double(double pixel, int row, int col)>;
 void paint(const std::string& from, const std::string& to, const Paint& change)
 {
     std::filesystem::copy_file(from, to);
+    GDALAllRegister();
     const std::unique_ptr<GDALDataset> file(GDALDataset::Open(to.c_str(), GDAL_OF_UPDATE));
     REQUIRE(file);
     const tiling::Size size{file->GetRasterYSize(), file->GetRasterXSize()};

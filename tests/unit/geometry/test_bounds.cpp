@@ -64,6 +64,8 @@ TEST_CASE("the range of a disparity map holds its small tower and not its noise"
     REQUIRE(bounds.has_value());
     CHECK(bounds->min_px == 5);
     CHECK(bounds->max_px == 42);
+    CHECK(bounds->low_gap_px == 0);
+    CHECK(bounds->high_gap_px == 37); // between ground and roof
 }
 
 TEST_CASE("a disparity map of noise has no range")

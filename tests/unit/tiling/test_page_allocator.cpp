@@ -1,19 +1,19 @@
 #include "tiling/image.h"
 #include "tiling/page_allocator.h"
+#include "tiling/page_store.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <random>
+#include <thread>
+#include <utility>
 #include <vector>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
-using hsgm::tiling::PageAllocator;
+using namespace hsgm::tiling;
 
 TEST_CASE("Pixels start at an address that suits any vector")
 {
@@ -27,43 +27,82 @@ TEST_CASE("Pixels start at an address that suits any vector")
 TEST_CASE("An image without a value to fill it with is zero, whatever lay there before")
 {
     for (int i = 0; i < 2; ++i) {
-        hsgm::tiling::Image<std::uint16_t> image({1500, 2000});
+        Image<std::uint16_t> image({1500, 2000});
         const auto pixels = image.pixels();
         CHECK(std::all_of(pixels.begin(), pixels.end(), [](int p) { return p == 0; }));
         std::fill_n(image.data(), pixels.size(), std::uint16_t{9});
     }
 }
 
-#ifdef __GLIBC__
-TEST_CASE("Tile after tile finds room in what earlier ones left")
+TEST_CASE("A freed block is used again")
 {
-    using Pixels = std::vector<std::uint16_t, PageAllocator<std::uint16_t>>;
-    // As the program sets it (pipeline/freed_memory.h): all from one heap, which keeps it.
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_ARENA_MAX, 1);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    release_free_pages();
+    void* const first = take_pages(5 << 20);
+    CHECK(reinterpret_cast<std::uintptr_t>(first) % (2 << 20) == 0);
+    give_pages(first, 5 << 20);
+    void* const again = take_pages(5 << 20);
+    CHECK(again == first);
+    give_pages(again, 5 << 20);
+    void* const smaller = take_pages(4 << 20); // its end goes back
+    CHECK(smaller == first);
+    CHECK(held_page_bytes() == 4 << 20);
+    void* const small = take_pages(1 << 20); // not from a much larger one
+    give_pages(smaller, 4 << 20);
+    CHECK(held_page_bytes() == 5 << 20);
+    give_pages(small, 1 << 20);
+    release_free_pages();
+    CHECK(held_page_bytes() == 0);
+}
+
+TEST_CASE("Blocks of all sizes, taken and freed over and over, never hold a tenth too much")
+{
+    release_free_pages();
     std::mt19937 random(1);
-    std::deque<Pixels> alive;
-    std::deque<std::vector<int>> small;
-    std::size_t most = 0; // bytes alive
-    std::size_t heap = 0;
-    for (int i = 0; i < 2000; ++i) {
-        alive.emplace_back(random() % (std::size_t{6} << 20)); // up to 12 MiB
-        small.emplace_back(random() % 2000);
+    std::deque<std::pair<std::uint8_t*, std::size_t>> alive;
+    std::size_t used = 0;
+    std::size_t most = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const std::size_t bytes = (std::size_t{1} << 20) + random() % (std::size_t{12} << 20);
+        alive.emplace_back(static_cast<std::uint8_t*>(take_pages(bytes)), bytes);
+        alive.back().first[0] = 1;
+        alive.back().first[bytes - 1] = 1;
+        used += bytes;
+        most = std::max(most, used);
         if (alive.size() > 12) {
+            give_pages(alive.front().first, alive.front().second);
+            used -= alive.front().second;
             alive.pop_front();
         }
-        if (small.size() > 200) {
-            small.pop_front();
-        }
-        std::size_t bytes = 0;
-        for (const Pixels& pixels : alive) {
-            bytes += 2 * pixels.size();
-        }
-        most = std::max(most, bytes);
-        heap = mallinfo2().arena;
+        REQUIRE(held_page_bytes() <= most + most / 10 + 13 * (std::size_t{64} << 10));
     }
-    CAPTURE(most >> 20, heap >> 20);
-    CHECK(heap < most / 2 * 5);
+    for (const auto& [block, bytes] : alive) {
+        give_pages(block, bytes);
+    }
+    release_free_pages();
+    CHECK(held_page_bytes() == 0);
 }
-#endif
+
+TEST_CASE("Threads that take and free side by side share what is free")
+{
+    release_free_pages();
+    std::vector<std::thread> threads;
+    std::atomic<int> wrong = 0;
+    for (int t = 0; t < 4; ++t) {
+        threads.emplace_back([t, &wrong] {
+            for (int i = 0; i < 300; ++i) {
+                const std::size_t bytes = std::size_t(1 + (i + t) % 5) << 20;
+                auto* const block = static_cast<std::uint8_t*>(take_pages(bytes));
+                std::fill_n(block, bytes, static_cast<std::uint8_t>(t));
+                wrong += std::count(block, block + bytes, t) != std::ptrdiff_t(bytes);
+                give_pages(block, bytes);
+            }
+        });
+    }
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    CHECK(wrong == 0);
+    CHECK(held_page_bytes() <= 4 * (5 << 20) * 11 / 10);
+    release_free_pages();
+    CHECK(held_page_bytes() == 0);
+}
