@@ -46,6 +46,16 @@ inline constexpr const char* kRawRun = "pair: {left: scene/left.tif, right: scen
                                        "geometry: {kind: rpc}\n"
                                        "output: {folder: result}\n";
 
+/// A DSM against the truth of its scene, on land that both images see.
+inline json score_of(const std::string& dsm, const std::string& scene)
+{
+    return json::parse(
+        hsgm_does({"evaluate", "dsm", dsm, scene + "/truth_dsm.tif", "--mask",
+                   scene + "/truth_visible.tif", "--mask-bits", "3", "--classes",
+                   scene + "/truth_classes.tif", "--align-classes", "0", "--json"})
+            .out);
+}
+
 /// The scene, its right image turned by so many degrees, and a configuration for it.
 class RawPlace {
 public:
@@ -67,12 +77,7 @@ public:
     }
     json score(const std::string& result) const
     {
-        return json::parse(
-            hsgm_does({"evaluate", "dsm", folder_ / (result + "/dsm.tif"),
-                       folder_ / "scene/truth_dsm.tif", "--mask",
-                       folder_ / "scene/truth_visible.tif", "--mask-bits", "3", "--classes",
-                       folder_ / "scene/truth_classes.tif", "--align-classes", "0", "--json"})
-                .out);
+        return score_of(folder_ / (result + "/dsm.tif"), folder_ / "scene");
     }
 
 private:

@@ -1,13 +1,11 @@
 // Orthoimages and reference DEMs, from a scene with exact truth to a DSM.
 
-#include "tests/end_to_end/pairs.h"
-#include "tests/end_to_end/rasters.h"
+#include "tests/end_to_end/raw_place.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace hsgm::tests;
-using nlohmann::json;
 
 namespace {
 
@@ -45,9 +43,6 @@ constexpr const char* kOrtho =
     "pair: {left: scene/ortho_left.tif, right: scene/ortho_right.tif}\n"
     "geometry: {kind: ortho, reference_dem: scene/reference_dem.tif}\n"
     "output: {folder: result}\n";
-constexpr const char* kRpc = "pair: {left: scene/left.tif, right: scene/right.tif}\n"
-                             "geometry: {kind: rpc}\n"
-                             "output: {folder: result}\n";
 
 class Place {
 public:
@@ -57,7 +52,7 @@ public:
         scene.replace(scene.find("ORTHO"), 5, ortho);
         put_bytes(folder_ / "scene.yaml", scene);
         put_bytes(folder_ / "ortho.yaml", kOrtho);
-        put_bytes(folder_ / "rpc.yaml", kRpc);
+        put_bytes(folder_ / "rpc.yaml", kRawRun);
         hsgm_does({"synth", folder_ / "scene.yaml", "-o", folder_ / "scene"});
     }
     std::string operator/(const std::string& name) const { return folder_ / name; }
@@ -74,12 +69,7 @@ public:
     }
     json score(const std::string& result) const
     {
-        return json::parse(
-            hsgm_does({"evaluate", "dsm", folder_ / (result + "/dsm.tif"),
-                       folder_ / "scene/truth_dsm.tif", "--mask",
-                       folder_ / "scene/truth_visible.tif", "--mask-bits", "3", "--classes",
-                       folder_ / "scene/truth_classes.tif", "--align-classes", "0", "--json"})
-                .out);
+        return score_of(folder_ / (result + "/dsm.tif"), folder_ / "scene");
     }
 
 private:
@@ -108,13 +98,6 @@ int span_of(const json& info)
     const std::string range = info["metadata"][""]["HSGM_DISPARITY"];
     const auto dots = range.find("..");
     return std::stoi(range.substr(dots + 2)) - std::stoi(range.substr(0, dots));
-}
-
-void says(const Outcome& outcome, int code, const std::string& part)
-{
-    CAPTURE(outcome.err, part);
-    CHECK(outcome.code == code);
-    CHECK(outcome.err.find(part) != std::string::npos);
 }
 
 void gdal(const std::vector<std::string>& command)

@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""Prints the tables of docs/geometry.md: raw pairs and orthoimages to surface models, scored.
+
+    tests/benchmarks/satellites.py [--hsgm build/hsgm] [--data ../shared/data] [--set KEY=VALUE ...] [TABLE ...]
+
+Tables: pair, step, ortho, fused, real. All with default options but for --set. Needs GDAL's Python
+bindings and numpy (Debian: python3-gdal python3-numpy).
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy
+from osgeo import gdal
+
+import tables
+
+gdal.UseExceptions()
+
+SCENE = "synthetic_satellite_500m"
+
+
+def data(*parts):
+    return os.path.join(tables.PATHS["data"], *parts)
+
+
+def run(folder, name, config, settings=()):
+    """Runs a configuration given as a map; its result folder, CPU seconds and peak MB."""
+    result = os.path.join(folder, name)
+    path = os.path.join(folder, name + ".json")  # JSON is YAML
+    with open(path, "w", encoding="ascii") as file:
+        json.dump(config | {"output": {"folder": result}}, file)
+    options = [part for key in settings for part in ("--set", key)]
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+            "u = resource.getrusage(resource.RUSAGE_CHILDREN); print(u.ru_utime + u.ru_stime, u.ru_maxrss)")
+    done = subprocess.run([sys.executable, "-c", code, tables.PATHS["hsgm"], "--log-level", "error", "run", path,
+                           *options], check=True, stdout=subprocess.PIPE)
+    seconds, kilobytes = done.stdout.split()
+    return result, float(seconds), int(kilobytes) * 1024 / 1e6
+
+
+def score(result, left_bit=1, right_bit=2):
+    seen = str(left_bit + right_bit)
+    return json.loads(tables.run(
+        "evaluate", "dsm", os.path.join(result, "dsm.tif"), data(SCENE, "truth_dsm.tif"), "--mask",
+        data(SCENE, "truth_visible.tif"), "--mask-bits", seen, "--classes", data(SCENE, "truth_classes.tif"),
+        "--align-classes", "0", "--exclude-classes", "3", "--json"))
+
+
+def within(scored):
+    return next(w["percent"] for w in scored["within"] if w["threshold_m"] == 1)
+
+
+def cells(scored):
+    shift = scored["shift"]
+    return (f"{scored['completeness_percent']:.2f} %", f"{within(scored):.2f} %", f"{scored['nmad_m']:.3f} m",
+            f"{scored['rmse_m']:.2f} m", f"{scored['le90_m']:.2f} m",
+            f"{within(scored['classes']['1']):.1f} %", f"{within(scored['classes']['4']):.1f} %",
+            f"{shift['east_m']:.2f}, {shift['north_m']:.2f}, {shift['up_m']:.2f}")
+
+
+HEAD = ("complete", "within 1 m", "NMAD", "RMSE", "LE90", "buildings", "low texture", "shift found, m")
+
+
+def of_views(left, right):
+    return {"pair": {"left": data(SCENE, left + ".tif"), "right": data(SCENE, right + ".tif")},
+            "geometry": {"kind": "rpc"}}
+
+
+def megapixels(path):
+    raster = gdal.Open(path)
+    return raster.RasterXSize * raster.RasterYSize / 1e6
+
+
+def pair(folder, settings):
+    print("### The raw pair\n")
+    tables.header("", *HEAD, "CPU s/Mpx", "peak MB")
+    for name, views, more in (("raw pair", ("left", "right"), []), ("swapped", ("right", "left"), []),
+                              ("without an error of pointing", ("left", "third"), []),
+                              ("min_confidence 180", ("left", "right"), ["matcher.min_confidence=180"]),
+                              ("min_confidence 220", ("left", "right"), ["matcher.min_confidence=220"])):
+        result, seconds, peak = run(folder, "pair", of_views(*views), [*settings, *more])
+        bits = {"left": 1, "right": 2, "third": 4}
+        scored = score(result, bits[views[0]], bits[views[1]])
+        tables.row(name, *cells(scored), f"{seconds / megapixels(data(SCENE, views[0] + '.tif')):.1f}", f"{peak:.0f}")
+    print()
+
+
+def step(folder, settings):
+    print("### The step of the frame\n")
+    tables.header("m", *HEAD, "CPU s/Mpx")
+    for metres in (0.5, 0.42, 0.375, 0.35, 0.3):
+        result, seconds, _ = run(folder, "step", of_views("left", "right"),
+                                 [*settings, f"geometry.epipolar_gsd_m={metres}"])
+        tables.row(metres, *cells(score(result)), f"{seconds / megapixels(data(SCENE, 'left.tif')):.1f}")
+    print()
+
+
+def ortho_image(side, how):
+    with open(data(SCENE, "scene.json"), encoding="ascii") as file:
+        view = json.load(file)["views"][side]
+    image = {"path": data(SCENE, f"ortho_{side}.tif")}
+    if how == "vector":
+        image["view_vector"] = [view["b_dE_dz"], view["b_dN_dz"]]
+    return image
+
+
+def ortho(folder, settings):
+    print("### Orthoimages and a reference DEM\n")
+    tables.header("", *HEAD)
+    dem = {"reference_dem": data(SCENE, "ortho_refdem.tif"), "reference_dem_vertical": "ellipsoid"}
+    images = {"left": ortho_image("left", "vector"), "right": ortho_image("right", "vector")}
+    for name, config in (("raw pair", of_views("left", "right")),
+                         ("raw pair, with the DEM", of_views("left", "right") | {"geometry": {"kind": "rpc"} | dem}),
+                         ("ortho pair", {"pair": images, "geometry": {"kind": "ortho"} | dem})):
+        result, _, _ = run(folder, "ortho", config, settings)
+        tables.row(name, *cells(score(result)))
+    print()
+
+
+def fused(folder, settings):
+    print("### Three views (every cell of the land)\n")
+    tables.header("", "complete", "within 1 m", "NMAD", "LE90", "CPU s")
+    three = {v: data(SCENE, v + ".tif") for v in ("left", "right", "third")}
+    whole, seconds, _ = run(folder, "fused", {"images": three, "geometry": {"kind": "rpc"}}, settings)
+    pairs = sorted(f for f in os.listdir(os.path.join(whole, "pairs")))
+    for name, result in [(p, os.path.join(whole, "pairs", p)) for p in pairs] + [("fused", whole)]:
+        if not os.path.exists(os.path.join(result, "dsm.tif")):
+            continue
+        s = json.loads(tables.run(
+            "evaluate", "dsm", os.path.join(result, "dsm.tif"), data(SCENE, "truth_dsm.tif"), "--classes",
+            data(SCENE, "truth_classes.tif"), "--align-classes", "0", "--exclude-classes", "3", "--json"))
+        tables.row(name, f"{s['completeness_percent']:.2f} %", f"{within(s):.2f} %", f"{s['nmad_m']:.3f} m",
+                   f"{s['le90_m']:.2f} m", f"{seconds:.0f}" if name == "fused" else "")
+    print()
+
+
+def raw_image(place, name):
+    geom = data(place, os.path.splitext(name)[0] + ".geom")
+    return {"path": data(place, name)} | ({"rpc": geom} if os.path.exists(geom) else {})
+
+
+def pyramid_height(path):
+    """The 99.99th percentile and the highest cell, above the median of a ring round the middle of the top."""
+    raster = gdal.Open(path)
+    heights = raster.ReadAsArray().astype(float)
+    heights[heights == raster.GetRasterBand(1).GetNoDataValue()] = numpy.nan
+    top = numpy.unravel_index(numpy.nanargmax(heights), heights.shape)
+    far = numpy.hypot(*(numpy.indices(heights.shape) - numpy.array(top)[:, None, None])) * raster.GetGeoTransform()[1]
+    ground = numpy.nanmedian(heights[(far > 170) & (far < 230)])
+    return numpy.nanpercentile(heights, 99.99) - ground, numpy.nanmax(heights) - ground
+
+
+def real(folder, settings):
+    print("### Real pairs\n")
+    tables.header("", "pointing px", "heights m", "CPU s/Mpx", "peak MB", "what was found")
+    for name, place, left, right in (("Réunion", "sat_reunion_pair", "img_01.tif", "img_02.tif"),
+                                     ("Gizeh", "sat_gizeh_phr", "img1.tif", "img2.tif"),
+                                     ("Kahramanmaraş", "sat_kahramanmaras_pre", "img1.tif", "img2.tif")):
+        config = {"pair": {"left": raw_image(place, left), "right": raw_image(place, right)},
+                  "geometry": {"kind": "rpc"}}
+        result, seconds, peak = run(folder, place, config, settings)
+        with open(os.path.join(result, "geometry.json"), encoding="ascii") as file:
+            geometry = json.load(file)
+        found = ""
+        if name == "Réunion":
+            s = json.loads(tables.run("evaluate", "dsm", os.path.join(result, "dsm.tif"),
+                                      data(place, "expected_dsm_s2p.tif"), "--align", "none", "--json"))
+            found = (f"beside s2p: median {s['median_error_m']:.2f} m, NMAD {s['nmad_m']:.2f} m, within 1 m "
+                     f"{within(s):.1f} %, complete {s['completeness_percent']:.1f} %")
+        if name == "Gizeh":
+            most, highest = pyramid_height(os.path.join(result, "dsm.tif"))
+            found = f"pyramid {most:.1f} m (99.99th percentile), {highest:.1f} m (highest cell); truth 138.5 m"
+        low, high = geometry["heights_m"]
+        tables.row(name, f"{geometry['pointing']['shift_px']:.2f}", f"{low:.0f} to {high:.0f}",
+                   f"{seconds / megapixels(data(place, left)):.1f}", f"{peak:.0f}", found)
+    print()
+
+
+TABLES = {"pair": pair, "step": step, "ortho": ortho, "fused": fused, "real": real}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", choices=[[], *TABLES])
+    parser.add_argument("--set", action="append", default=[], help="of the runs: matcher.cost=census7x7")
+    tables.add_paths(parser)
+    arguments = parser.parse_args()
+    tables.use_paths(arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        for name in arguments.tables or TABLES:
+            TABLES[name](folder, arguments.set)
+
+
+if __name__ == "__main__":
+    main()
