@@ -23,9 +23,9 @@ namespace hsgm::pipeline {
 namespace {
 
 constexpr std::int64_t kMiB = std::int64_t{1} << 20;
-/// The program and its libraries (51 MiB, measured), stacks, ledgers, and what the allocator
-/// holds back.
-constexpr std::int64_t kBaseBytes = 64 * kMiB;
+/// The program and its libraries (50 MiB at the start, 72 once all are at work, measured),
+/// stacks, ledgers, and what the allocator holds back.
+constexpr std::int64_t kBaseBytes = 80 * kMiB;
 /// Two sources: a strip of doubles and of pixels each, and GDAL's decoded blocks.
 constexpr std::int64_t kStripBytes = 2 * (16 * kMiB + 4 * kMiB + 8 * kMiB);
 /// Larger tiles repeat less work at their borders, but gain little beyond this.

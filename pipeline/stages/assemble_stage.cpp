@@ -1,6 +1,7 @@
 #include "pipeline/stages/assemble_stage.h"
 
 #include "pipeline/error.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/stages/pair_stage.h"
 #include "pipeline/stages/pictures_stage.h"
 #include "pipeline/stages/satellite_stage.h"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace hsgm::pipeline {
 
@@ -84,15 +86,20 @@ MatchSummary assemble(const PlannedJob& planned, const RunLayout& layout,
             open_images(planned, layout, ledger::read_ledger(layout.coarse_ledger()).facts);
         summary = refine_and_write(results, *images, planned.shape, planned.job, planned.geo);
     });
+    const auto then = [&](const char* stage, const std::function<void()>& work) {
+        give_back_freed_memory(); // of the stage before
+        book.record(stage, whole, work);
+    };
     if (planned.job.satellite) {
-        book.record("dsm", whole, [&] { summary.dsm = write_satellite_heights(planned.job); });
+        then("dsm", [&] { summary.dsm = write_satellite_heights(planned.job); });
     }
     if (!outputs.hillshade.empty()) {
-        book.record("hillshade", whole, [&] { write_hillshade_of(outputs); });
+        then("hillshade", [&] { write_hillshade_of(outputs); });
     }
     if (!outputs.disparity_picture.empty()) {
-        book.record("pictures", whole, [&] { write_pictures_of(outputs); });
+        then("pictures", [&] { write_pictures_of(outputs); });
     }
+    give_back_freed_memory();
     return summary;
 }
 
