@@ -189,7 +189,10 @@ private:
     HWY_INLINE void sum_pixel(const SumRow& row, const std::array<StepPath, 3>& paths,
                               int number) const
     {
-        Pixel a = pixel(paths[0], number, row.pitch);
+        Pixel a{}; // without a path there are no values to look at
+        if constexpr (kCount > 0) {
+            a = pixel(paths[0], number, row.pitch);
+        }
         Pixel b = kCount > 1 ? pixel(paths[1], number, row.pitch) : a;
         Pixel c = kCount > 2 ? pixel(paths[2], number, row.pitch) : a;
         int at = 0;
