@@ -1,6 +1,8 @@
 #include "matcher/profile.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -33,6 +35,21 @@ Options options_of(Profile profile)
         break;
     }
     return o;
+}
+
+void fit_penalties(Options& options, double unlike_share)
+{
+    constexpr double kAlike = 0.05;
+    constexpr double kUnlike = 0.2;
+    if (options.mode == Mode::hsgm_paper) {
+        return;
+    }
+    const double part = std::clamp((unlike_share - kAlike) / (kUnlike - kAlike), 0.0, 1.0);
+    const auto fitted = [&](int penalty, double least) {
+        return static_cast<int>(std::lround(penalty * (least + (1 - least) * part)));
+    };
+    options.p1 = fitted(options.p1, 1.0 / 2);
+    options.p2 = std::max(options.p1, fitted(options.p2, 1.0 / 4));
 }
 
 std::string_view name(Profile profile)

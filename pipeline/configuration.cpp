@@ -229,6 +229,21 @@ void refuse_mixtures(const ConfigSection& pair, const ConfigSection& geometry, c
     }
 }
 
+// Whether the penalties are fitted to how alike the images are. Said in the configuration that
+// the run keeps, so that its p1 and p2 mean there what they meant here.
+bool read_fit(ConfigSection& matcher, const std::string& kind)
+{
+    const bool raw = kind == "rpc" || kind == "ortho";
+    const bool given = matcher.has("p1") || matcher.has("p2") || matcher.has("p2_half_tone");
+    const bool fit = matcher.choice("penalties", raw && !given ? "auto" : "fixed",
+                                    {"auto", "fixed"}) == "auto";
+    if (fit && kind == "rectified") {
+        matcher.fail("penalties", "is 'auto', which is for geometry kind rpc or ortho only: "
+                                  "leave it out, or give p1 and p2");
+    }
+    return fit;
+}
+
 } // namespace
 
 Job read_knobs(io::ConfigDocument& document)
@@ -252,6 +267,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     job = read_knobs(document);
     const std::string kind = geometry.text("kind", "");
     const auto disparity = matcher.range_or("disparity", "auto");
+    const bool fit_penalties = read_fit(matcher, kind);
     if (root.has("images") || root.has("pairs")) {
         root.fail(root.has("images") ? "images" : "pairs",
                   "is for several pairs of one area, which hsgm run alone takes, with `images` "
@@ -259,6 +275,9 @@ Configuration read_configuration(io::ConfigDocument& document)
     }
     job.geometry = read_geometry(geometry, kind);
     job.satellite = read_satellite(geometry, root.section("dsm"), kind);
+    if (job.satellite) {
+        job.satellite->fit_penalties = fit_penalties;
+    }
     const auto creation_options = output.texts("creation_options");
     const bool hillshade = output.flag("hillshade", true);
     const bool quicklooks = output.flag("quicklooks", false);

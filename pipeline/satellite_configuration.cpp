@@ -105,6 +105,7 @@ std::string first_given(const std::vector<std::string>& keys, const SatelliteOpt
         {"reference_dem", given.dem.has_value()},
         {"above_dem_m", a.above_dem.has_value()},
         {"gsd_m", given.dsm_gsd_m != defaults.dsm_gsd_m},
+        {"min_confidence", given.dsm_min_confidence != defaults.dsm_min_confidence},
         {"crs", a.crs != b.crs},
         {"vertical", a.vertical != b.vertical}};
     const auto found = std::find_if(keys.begin(), keys.end(),
@@ -137,6 +138,8 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
         geometry.number_or("epipolar_gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
     options.dsm_gsd_m =
         dsm.number_or("gsd_m", "auto", std::nullopt, kLeastM, kMostM).value_or(0);
+    options.dsm_min_confidence =
+        dsm.integer("min_confidence", defaults.dsm_min_confidence, 0, 255);
     options.stored = geometry.optional_path("stored").value_or("");
     options.pointing_from = geometry.optional_path("pointing_from").value_or("");
     options.search.region = read_region(dsm);
@@ -151,7 +154,9 @@ std::optional<SatelliteOptions> read_satellite(ConfigSection geometry, ConfigSec
                             "stored", "pointing_from", "reference_dem", "above_dem_m"},
                            options),
                kWhy);
-        refuse(dsm, first_given({"gsd_m", "crs", "vertical", "bounds", "region"}, options),
+        refuse(dsm,
+               first_given({"gsd_m", "min_confidence", "crs", "vertical", "bounds", "region"},
+                           options),
                kWhy);
         return std::nullopt;
     }

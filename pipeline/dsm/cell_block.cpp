@@ -122,6 +122,7 @@ Cells CellBlock::finish()
                 continue;
             }
             const double weight = weight_of(layer);
+            const double all = weight_of(std::span<const Member>(members));
             double height = 0;
             double confidence = 0;
             for (const Member& member : layer) {
@@ -138,7 +139,7 @@ Cells CellBlock::finish()
             cells.points(r, c) =
                 static_cast<std::uint8_t>(std::min<std::size_t>(layer.size(), 255));
             cells.confidence(r, c) =
-                static_cast<std::uint8_t>(std::floor(confidence / weight + 0.5));
+                static_cast<std::uint8_t>(std::max(1.0, std::floor(confidence / all + 0.5)));
         }
     }
     return cells;

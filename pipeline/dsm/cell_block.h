@@ -31,10 +31,12 @@ struct Cells {
         points(row, col) = 0;
         confidence(row, col) = 0;
     }
-    tiling::Image<float> height;            ///< kNoHeight where there is no point
-    tiling::Image<float> spread;            ///< root mean square of the points about it
-    tiling::Image<std::uint8_t> points;     ///< that it was made from, at most 255
-    tiling::Image<std::uint8_t> confidence; ///< their mean, 1 to 255; 0: no value
+    tiling::Image<float> height;        ///< kNoHeight where there is no point
+    tiling::Image<float> spread;        ///< root mean square of the points about it
+    tiling::Image<std::uint8_t> points; ///< that it was made from, at most 255
+    /// 1 to 255, 0 where there is no value: the points' mean, times the layer's share of all
+    /// weight: where a cell lies across an edge, either surface may be the one at its centre.
+    tiling::Image<std::uint8_t> confidence;
 };
 
 /// Some cells of a grid while their points come in. A cell's height is the mean of the points

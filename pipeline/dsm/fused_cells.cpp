@@ -119,4 +119,37 @@ FusedCells fuse(std::span<const ReasonedCells> pairs, double gap_m, double sprea
     return fused;
 }
 
+namespace {
+
+template <typename Exempt>
+void remove_below(ReasonedCells& cells, int least, const Exempt& exempt)
+{
+    for (int row = 0; row < cells.reasons.rows(); ++row) {
+        for (int col = 0; col < cells.reasons.cols(); ++col) {
+            if (cells.cells.height(row, col) != kNoHeight &&
+                cells.cells.confidence(row, col) < least && !exempt(row, col)) {
+                cells.cells.clear(row, col);
+                cells.reasons(row, col) = static_cast<std::uint8_t>(Missing::uncertain);
+            }
+        }
+    }
+}
+
+} // namespace
+
+void remove_uncertain(ReasonedCells& cells, int least)
+{
+    remove_below(cells, least, [](int, int) { return false; });
+}
+
+void remove_uncertain(FusedCells& cells, int least)
+{
+    remove_below(cells.of, least, [&](int row, int col) { return cells.pairs(row, col) > 1; });
+    for (std::int64_t i = 0; i < cells.pairs.size().area(); ++i) {
+        if (cells.of.reasons.data()[i] != static_cast<std::uint8_t>(Missing::none)) {
+            cells.pairs.data()[i] = 0;
+        }
+    }
+}
+
 } // namespace hsgm::dsm

@@ -15,6 +15,9 @@ struct ReasonedCells {
     tiling::Image<std::uint8_t> reasons; ///< `Missing` of each
 };
 
+/// Takes the heights away that are less confident than `least` (0: none is), and says so.
+void remove_uncertain(ReasonedCells& cells, int least);
+
 /// The same cells as several pairs have them together.
 struct FusedCells {
     ReasonedCells of;
@@ -33,5 +36,9 @@ struct FusedCells {
 /// Depends on the order of the pairs where weights tie alone: give them in a fixed one. At
 /// least one; all of one size.
 FusedCells fuse(std::span<const ReasonedCells> pairs, double gap_m, double spread_floor_m);
+
+/// Takes the heights away that are less confident than `least` and that only one pair has:
+/// where others agree, each bears the other out.
+void remove_uncertain(FusedCells& cells, int least);
 
 } // namespace hsgm::dsm

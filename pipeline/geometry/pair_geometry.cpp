@@ -254,9 +254,14 @@ PairGeometry read(const json& j)
                       {j.at("disparity").at(0), j.at("disparity").at(1)},
                       {j.at("heights_m").at(0), j.at("heights_m").at(1)},
                       std::nullopt,
+                      std::nullopt,
                       j.at("warnings").get<std::vector<std::string>>()};
     if (j.contains("pointing")) {
         pair.pointing = pointing(j.at("pointing"));
+    }
+    if (j.contains("likeness")) {
+        const json& likeness = j.at("likeness");
+        pair.likeness = Likeness{likeness.at("windows"), likeness.at("unlike_share")};
     }
     return pair;
 }
@@ -279,6 +284,10 @@ std::string to_json(const PairGeometry& pair)
            {"warnings", pair.warnings}};
     if (pair.pointing) {
         j["pointing"] = written(*pair.pointing);
+    }
+    if (pair.likeness) {
+        j["likeness"] = {{"windows", pair.likeness->windows},
+                         {"unlike_share", pair.likeness->unlike_share}};
     }
     return j.dump(1) + "\n";
 }

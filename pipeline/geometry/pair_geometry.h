@@ -14,6 +14,13 @@
 
 namespace hsgm::geometry {
 
+/// How alike the images are where samples of them were matched: what noise, haze and change
+/// between the two dates leave of the texture.
+struct Likeness {
+    int windows = 0;         ///< 7 x 7 pixels of the frame each, matched throughout
+    double unlike_share = 0; ///< of them, those that correlate by less than 0.8
+};
+
 /// All that is known of a pair before it is matched. Made once, stored, and then only read:
 /// whoever has it agrees with all others to the last bit.
 struct PairGeometry {
@@ -28,6 +35,7 @@ struct PairGeometry {
     HeightSpan heights; ///< that the disparities stand for, above the ellipsoid; over a
                         ///< surface with relief, from its lowest to its highest place
     std::optional<Pointing> pointing;
+    std::optional<Likeness> likeness; ///< where it was measured
     std::vector<std::string> warnings;
 };
 

@@ -116,7 +116,12 @@ DsmSummary write_dsm(const MatchedPair& pair, const DsmOptions& options, const D
     CellRasters rasters(grid, options, paths);
     const auto blocks = CellRasters::blocks_of(grid);
     in_order(
-        blocks.size(), [&](std::size_t i) { return pair_cells.block(grid, blocks[i]); },
+        blocks.size(),
+        [&](std::size_t i) {
+            ReasonedCells cells = pair_cells.block(grid, blocks[i]);
+            remove_uncertain(cells, options.cells.min_confidence);
+            return cells;
+        },
         [&](std::size_t i, const ReasonedCells& cells) { rasters.write(blocks[i], cells); });
     return rasters.finish();
 }

@@ -146,7 +146,8 @@ FuseSummary fuse_pairs(const std::vector<FinishedPair>& pairs, const OutputPaths
     require_one_grid(pairs, how);
     DsmOptions options = how.front();
     options.metadata["HSGM_PAIRS"] = std::to_string(pairs.size());
-    options.metadata.erase("HSGM_DISPARITY"); // each pair has its own
+    options.metadata.erase("HSGM_DISPARITY"); // each pair has its own, and perhaps
+    options.metadata.erase("HSGM_PENALTIES");
     options.creation_options = outputs.creation_options;
     FuseSummary summary;
     summary.pairs = shifts_of(pairs);
@@ -175,7 +176,9 @@ FuseSummary fuse_pairs(const std::vector<FinishedPair>& pairs, const OutputPaths
             for (const auto& pair : laid) {
                 of_pairs.push_back(pair->cells->block(grid, blocks[i]));
             }
-            return dsm::fuse(of_pairs, kGap * step_m, kSpreadFloor * step_m);
+            auto fused = dsm::fuse(of_pairs, kGap * step_m, kSpreadFloor * step_m);
+            remove_uncertain(fused, options.cells.min_confidence);
+            return fused;
         },
         [&](std::size_t i, const dsm::FusedCells& cells) {
             rasters.write(blocks[i], cells.of);

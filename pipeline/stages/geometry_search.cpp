@@ -7,6 +7,7 @@
 #include "pipeline/stages/geometry_start.h"
 #include "pipeline/stages/given_heights.h"
 #include "pipeline/stages/height_search.h"
+#include "pipeline/stages/pair_likeness.h"
 #include "pipeline/stages/patch_ties.h"
 #include "pipeline/stages/region_stage.h"
 #include "pipeline/stages/resampled_source.h"
@@ -325,9 +326,13 @@ PairGeometry Search::finish()
         relief_ ? kReliefTolerance : kTolerance);
     ReferenceSurface surface = surface_at(level_m_);
     const HeightSpan heights = heights_over(surface);
+    std::optional<geometry::Likeness> likeness;
+    if (options_.likeness) {
+        likeness = measure_likeness(left_, right_, frame, disparity);
+    }
     return {left_.model(),    right_.model(),    map_.text(), output.text(), std::move(surface),
             std::move(frame), std::move(ground), disparity,   heights,       pointing_,
-            warnings_};
+            likeness,         warnings_};
 }
 
 void Search::begin()

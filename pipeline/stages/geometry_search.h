@@ -39,6 +39,7 @@ struct PairGeometryOptions {
     RegionOptions region;            ///< the ground that the frame must hold
     std::string crs;                 ///< of the ground points; empty: the UTM zone
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid
+    bool likeness = false;           ///< measure how alike the images are
 };
 
 /// The model of an image as these options take it.
@@ -54,7 +55,7 @@ geometry::MapBox ground_box(const SensorImage& left, const SensorImage& right,
 ///
 ///     models, overlap -> reduced images, coarse frame -> features -> rough pointing, heights
 ///        -> reduced images matched -> range of heights -> frame -> features of patches at
-///        full resolution -> pointing -> final frame, range and ground lattice
+///        full resolution -> pointing -> final frame, range and ground lattice -> likeness
 ///
 /// Pointing and heights are those of all that both images show; a region of interest limits the
 /// frame alone. Reads each image through once and patches of it again; memory does not grow

@@ -40,6 +40,7 @@ PieceSurvey survey_of(const PointPiece& points);
 struct CellManner {
     double cell_m = 1;          ///< side of a cell
     double map_units_per_m = 1; ///< 1 in metric maps
+    int min_confidence = 0;     ///< cells of less have no value; `PairCells` leaves them in
     /// Cells outside have no value; null: there is no such bound.
     std::shared_ptr<const dsm::CellArea> region;
 };

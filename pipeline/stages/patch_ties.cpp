@@ -1,10 +1,10 @@
 #include "pipeline/stages/patch_ties.h"
 
+#include "pipeline/stages/frame_patches.h"
 #include "pipeline/stages/resampled_source.h"
 #include "tiling/disparity_range.h"
 #include "tiling/image.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hsgm::pipeline {
@@ -31,16 +31,8 @@ std::vector<TiePoint> patch_points(const SensorView& left_view, const SensorView
     ResampledSource right = right_view.resampled(frame.right, frame.size);
     const TieGate gate{frame.below_m * frame.px_per_m, frame.above_m * frame.px_per_m, 0,
                        row_tolerance_px};
-    const auto patches_of = [](int extent) {
-        return std::clamp((extent + kPatchPx / 2) / kPatchPx, 1, kPatchesAcross);
-    };
-    const int down = patches_of(frame.size.rows);
-    const int across = patches_of(frame.size.cols);
     std::vector<TiePoint> points;
-    for (int i = 0; i < down * across; ++i) {
-        const int row = (2 * (i / across) + 1) * frame.size.rows / (2 * down) - kPatchPx / 2;
-        const int col = (2 * (i % across) + 1) * frame.size.cols / (2 * across) - kPatchPx / 2;
-        const Rect here = intersect({row, col, kPatchPx, kPatchPx}, rect_of(frame.size));
+    for (const Rect& here : spread_patches(frame.size, kPatchPx, kPatchesAcross)) {
         const Rect there = intersect(
             expand(right_reach(here, {static_cast<int>(std::floor(gate.disparity_min_px)),
                                       static_cast<int>(std::ceil(gate.disparity_max_px))}),

@@ -62,7 +62,7 @@ PlannedJob plan_job(const Job& job)
         planned.geo = left.geo_reference();
     }
     try {
-        const Matcher matcher(planning_traits(planned.shape), job.matcher);
+        const Matcher matcher(planning_traits(planned.shape), planned.job.matcher);
         planned.levels = matcher.plan();
         planned.pyramid_levels = levels_to_prepare(planned.shape, planned.levels, job);
         planned.budget = make_budget(matcher, planned.job, planned.pyramid_levels);

@@ -18,11 +18,16 @@ std::string describe_geometry(const geometry::PairGeometry& pair)
                         p.shift_px, p.affine ? " and a slope" : "", p.inliers, p.points,
                         p.rms_before_px, p.rms_after_px);
     }
+    std::string likeness;
+    if (pair.likeness) {
+        likeness = fmt::format("; {:.1f} % of the windows looked at unlike",
+                               100 * pair.likeness->unlike_share);
+    }
     return fmt::format(
         "{}; heights {:.0f} to {:.0f} m above the ellipsoid; frame of {} x {} px "
-        "of {:.3f} m, {:.2f} px per metre of height",
+        "of {:.3f} m, {:.2f} px per metre of height{}",
         pointing, pair.heights.low_m, pair.heights.high_m, pair.frame.size.cols,
-        pair.frame.size.rows, pair.frame.gsd_m, pair.frame.px_per_m);
+        pair.frame.size.rows, pair.frame.gsd_m, pair.frame.px_per_m, likeness);
 }
 
 nlohmann::ordered_json geometry_json(const geometry::PairGeometry& pair)
@@ -44,6 +49,10 @@ nlohmann::ordered_json geometry_json(const geometry::PairGeometry& pair)
             {"shift_px", p.shift_px},           {"affine", p.affine},
             {"tie_points", p.points},           {"inliers", p.inliers},
             {"rms_before_px", p.rms_before_px}, {"rms_after_px", p.rms_after_px}};
+    }
+    if (pair.likeness) {
+        json["likeness"] = {{"windows", pair.likeness->windows},
+                            {"unlike_share", pair.likeness->unlike_share}};
     }
     return json;
 }

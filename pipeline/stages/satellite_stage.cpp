@@ -2,6 +2,7 @@
 
 #include "io/hillshade.h"
 #include "io/raster_source.h"
+#include "matcher/profile.h"
 #include "pipeline/dsm/dsm_grid.h"
 #include "pipeline/error.h"
 #include "pipeline/geometry/map_projection.h"
@@ -50,6 +51,17 @@ std::string take_dem(Job& job)
     return elevation.warning;
 }
 
+/// A geometry of before likeness was measured leaves the penalties as they are, and so does
+/// one that saw too little.
+void fit_penalties(Job& job)
+{
+    constexpr int kEnoughWindows = 500;
+    const auto& likeness = job.satellite->pair->likeness;
+    if (job.satellite->fit_penalties && likeness && likeness->windows >= kEnoughWindows) {
+        matcher::fit_penalties(job.matcher, likeness->unlike_share);
+    }
+}
+
 } // namespace
 
 void plan_satellite(Job& job)
@@ -63,6 +75,7 @@ void plan_satellite(Job& job)
             std::tie(left.correction, right.correction) =
                 read_corrections(satellite.pointing_from, job);
         }
+        satellite.search.likeness = satellite.fit_penalties;
         PairGeometry pair = find_pair_geometry(left, right, satellite.search);
         if (!warning.empty()) {
             pair.warnings.push_back(warning);
@@ -72,6 +85,7 @@ void plan_satellite(Job& job)
         satellite.pair = std::make_shared<PairGeometry>(read_geometry(satellite.stored, job));
     }
     job.disparity = satellite.pair->disparity;
+    fit_penalties(job);
 }
 
 DsmOptions dsm_options(const Job& job)
@@ -80,11 +94,13 @@ DsmOptions dsm_options(const Job& job)
     DsmOptions options;
     options.cells.cell_m = cell_m(job);
     options.cells.map_units_per_m = map.in_metres() ? 1 : 1 / kMetresPerDegree;
+    options.cells.min_confidence = job.satellite->dsm_min_confidence;
     if (const RegionOptions& region = job.satellite->search.region; !region.empty()) {
         options.cells.region = region_on(region_deg(region, map), map);
     }
     options.map_wkt = map.wkt();
     options.metadata = provenance(job);
+    options.metadata["HSGM_DSM_MIN_CONFIDENCE"] = std::to_string(options.cells.min_confidence);
     options.metadata["HSGM_MAP"] = map.name();
     options.metadata["HSGM_HEIGHTS"] = map.height_name();
     options.creation_options = job.outputs.creation_options;

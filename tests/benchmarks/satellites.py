@@ -3,7 +3,7 @@
 
     tests/benchmarks/satellites.py [--hsgm build/hsgm] [--data ../shared/data] [--set KEY=VALUE ...] [TABLE ...]
 
-Tables: pair, step, ortho, fused, real. All with default options but for --set. Needs GDAL's Python
+Tables: pair, step, penalties, ortho, fused, real. All with default options but for --set. Needs GDAL's Python
 bindings and numpy (Debian: python3-gdal python3-numpy).
 """
 
@@ -81,8 +81,10 @@ def pair(folder, settings):
     tables.header("", *HEAD, "CPU s/Mpx", "peak MB")
     for name, views, more in (("raw pair", ("left", "right"), []), ("swapped", ("right", "left"), []),
                               ("without an error of pointing", ("left", "third"), []),
-                              ("min_confidence 180", ("left", "right"), ["matcher.min_confidence=180"]),
-                              ("min_confidence 220", ("left", "right"), ["matcher.min_confidence=220"])):
+                              ("every cell", ("left", "right"), ["dsm.min_confidence=0"]),
+                              ("cells from 210 on", ("left", "right"), ["dsm.min_confidence=210"]),
+                              ("penalties fixed", ("left", "right"), ["matcher.penalties=fixed"]),
+                              ("both", ("left", "right"), ["matcher.penalties=fixed", "dsm.min_confidence=0"])):
         result, seconds, peak = run(folder, "pair", of_views(*views), [*settings, *more])
         bits = {"left": 1, "right": 2, "third": 4}
         scored = score(result, bits[views[0]], bits[views[1]])
@@ -139,6 +141,38 @@ def fused(folder, settings):
     print()
 
 
+def penalties(folder, settings):
+    """The same penalties where the images look alike, and where they do not."""
+    print("### Penalties\n")
+    tables.header("p1, p2", "unlike", "synthetic scene: within 1 m", "RMSE", "LE90", "low texture",
+                  "Réunion: complete", "within 1 m", "RMSE to s2p")
+    reunion = {"pair": {"left": raw_image("sat_reunion_pair", "img_01.tif"),
+                        "right": raw_image("sat_reunion_pair", "img_02.tif")}, "geometry": {"kind": "rpc"}}
+    for p1, p2 in (("auto", ""), (8, 40), (12, 48), (12, 64), (16, 96), (20, 128), (24, 192)):
+        more = [] if p1 == "auto" else [f"matcher.p1={p1}", f"matcher.p2={p2}"]
+        result, _, _ = run(folder, "synthetic", of_views("left", "right"), [*settings, *more])
+        a = score(result)
+        unlike = [unlike_share(result)]
+        result, _, _ = run(folder, "reunion", reunion, [*settings, *more])
+        unlike.append(unlike_share(result))
+        b = beside_s2p(result)
+        tables.row(f"{p1}, {p2}" if p2 else p1, ", ".join(unlike), f"{within(a):.2f} %", f"{a['rmse_m']:.2f} m",
+                   f"{a['le90_m']:.2f} m", f"{within(a['classes']['4']):.1f} %", f"{b['completeness_percent']:.1f} %",
+                   f"{within(b):.1f} %", f"{b['rmse_m']:.2f} m")
+    print()
+
+
+def unlike_share(result):
+    with open(os.path.join(result, "geometry.json"), encoding="ascii") as file:
+        likeness = json.load(file).get("likeness")
+    return f"{100 * likeness['unlike_share']:.1f} %" if likeness else ""
+
+
+def beside_s2p(result):
+    return json.loads(tables.run("evaluate", "dsm", os.path.join(result, "dsm.tif"),
+                                 data("sat_reunion_pair", "expected_dsm_s2p.tif"), "--align", "none", "--json"))
+
+
 def raw_image(place, name):
     geom = data(place, os.path.splitext(name)[0] + ".geom")
     return {"path": data(place, name)} | ({"rpc": geom} if os.path.exists(geom) else {})
@@ -157,7 +191,7 @@ def pyramid_height(path):
 
 def real(folder, settings):
     print("### Real pairs\n")
-    tables.header("", "pointing px", "heights m", "CPU s/Mpx", "peak MB", "what was found")
+    tables.header("", "pointing px", "heights m", "CPU s/Mpx", "peak MB", "unlike", "what was found")
     for name, place, left, right in (("Réunion", "sat_reunion_pair", "img_01.tif", "img_02.tif"),
                                      ("Gizeh", "sat_gizeh_phr", "img1.tif", "img2.tif"),
                                      ("Kahramanmaraş", "sat_kahramanmaras_pre", "img1.tif", "img2.tif")):
@@ -168,8 +202,7 @@ def real(folder, settings):
             geometry = json.load(file)
         found = ""
         if name == "Réunion":
-            s = json.loads(tables.run("evaluate", "dsm", os.path.join(result, "dsm.tif"),
-                                      data(place, "expected_dsm_s2p.tif"), "--align", "none", "--json"))
+            s = beside_s2p(result)
             found = (f"beside s2p: median {s['median_error_m']:.2f} m, NMAD {s['nmad_m']:.2f} m, within 1 m "
                      f"{within(s):.1f} %, complete {s['completeness_percent']:.1f} %")
         if name == "Gizeh":
@@ -177,11 +210,11 @@ def real(folder, settings):
             found = f"pyramid {most:.1f} m (99.99th percentile), {highest:.1f} m (highest cell); truth 138.5 m"
         low, high = geometry["heights_m"]
         tables.row(name, f"{geometry['pointing']['shift_px']:.2f}", f"{low:.0f} to {high:.0f}",
-                   f"{seconds / megapixels(data(place, left)):.1f}", f"{peak:.0f}", found)
+                   f"{seconds / megapixels(data(place, left)):.1f}", f"{peak:.0f}", unlike_share(result), found)
     print()
 
 
-TABLES = {"pair": pair, "step": step, "ortho": ortho, "fused": fused, "real": real}
+TABLES = {"pair": pair, "step": step, "penalties": penalties, "ortho": ortho, "fused": fused, "real": real}
 
 
 def main():

@@ -95,6 +95,13 @@ TEST_CASE("of two surfaces the one of more weight wins, and nothing is mixed")
     // Ground at the centre, a roof at the rim.
     const std::vector<Sample> rim{{0.5, -0.5, 5, 100}, {1.2, -0.5, 30, 100}};
     CHECK(cells_of(metre_grid(1, 1), {0, 0, 1, 1}, rim).height(0, 0) == 5.0F);
+    // The surer that there is another surface, the less sure is this one: weights of 1 and
+    // 0.51^2 on either side, and none at all where both are one layer.
+    const double beside = std::pow(1 - 0.7 * 0.7, 2);
+    CHECK(cells_of(metre_grid(1, 1), {0, 0, 1, 1}, rim).confidence(0, 0) ==
+          std::floor(100 / (1 + beside) + 0.5));
+    const std::vector<Sample> together{{0.5, -0.5, 5, 100}, {1.2, -0.5, 5.5, 100}};
+    CHECK(cells_of(metre_grid(1, 1), {0, 0, 1, 1}, together).confidence(0, 0) == 100);
     // Of equals the higher one, as seen from above.
     const std::vector<Sample> equal{{0.25, -0.5, 5, 100}, {0.75, -0.5, 30, 100}};
     CHECK(cells_of(metre_grid(1, 1), {0, 0, 1, 1}, equal).height(0, 0) == 30.0F);

@@ -114,3 +114,38 @@ TEST_CASE("fused cells have the same bits in whatever order the pairs come")
         first = height;
     } while (std::next_permutation(order.begin(), order.end()));
 }
+
+TEST_CASE("heights less confident than asked for are taken away, and say so")
+{
+    for (const int confidence : {149, 150}) {
+        CAPTURE(confidence);
+        ReasonedCells cell = pair_of({10.0F, static_cast<std::uint8_t>(confidence)});
+        remove_uncertain(cell, 150);
+        const bool kept = confidence >= 150;
+        CHECK((cell.cells.height(0, 0) != kNoHeight) == kept);
+        CHECK((cell.cells.points(0, 0) != 0) == kept);
+        CHECK(cell.cells.confidence(0, 0) == (kept ? confidence : 0));
+        CHECK(cell.reasons(0, 0) ==
+              static_cast<std::uint8_t>(kept ? Missing::none : Missing::uncertain));
+    }
+    // What has no value keeps its reason.
+    ReasonedCells hole = without(Missing::occluded);
+    remove_uncertain(hole, 150);
+    CHECK(hole.reasons(0, 0) == static_cast<std::uint8_t>(Missing::occluded));
+    ReasonedCells any = pair_of({10.0F, 1});
+    remove_uncertain(any, 0);
+    CHECK(any.cells.height(0, 0) == 10.0F);
+}
+
+TEST_CASE("an uncertain height stays where two pairs have it and goes where they disagree")
+{
+    FusedCells agreed = fused({pair_of({10.0F, 100}), pair_of({10.4F, 100})});
+    remove_uncertain(agreed, 150);
+    CHECK(agreed.of.cells.height(0, 0) != kNoHeight);
+    CHECK(agreed.pairs(0, 0) == 2);
+    FusedCells disputed = fused({pair_of({10.0F, 100}), pair_of({20.0F, 100})});
+    remove_uncertain(disputed, 150);
+    CHECK(disputed.of.cells.height(0, 0) == kNoHeight);
+    CHECK(disputed.pairs(0, 0) == 0);
+    CHECK(disputed.of.reasons(0, 0) == static_cast<std::uint8_t>(Missing::uncertain));
+}
