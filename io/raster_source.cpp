@@ -197,6 +197,11 @@ Size RasterSource::block_size() const
     return size;
 }
 
+const std::string& RasterSource::path() const
+{
+    return state_->spec.path;
+}
+
 std::string RasterSource::description() const
 {
     if (state_->channels.size() == 3) {

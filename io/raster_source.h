@@ -33,6 +33,7 @@ public:
     GeoReference geo_reference() const;
     /// The pieces in which the file stores its pixels; windows aligned to it read fastest.
     tiling::Size block_size() const;
+    const std::string& path() const;
     /// For people: "left.tif, band 1" or "left.tif, luminance of bands 1-3".
     std::string description() const;
     /// GDAL's metadata of one domain, as stored: "" is the general one, "RPC" holds rational

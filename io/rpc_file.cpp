@@ -159,6 +159,12 @@ RpcItems read_rpb(const std::string& text)
     return items;
 }
 
+bool is_image(const std::string& path)
+{
+    const std::string end = upper(CPLGetExtension(path.c_str()));
+    return end == "TIF" || end == "TIFF" || end == "JP2" || end == "NTF" || end == "VRT";
+}
+
 struct XmlCloser {
     void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
 };
@@ -210,8 +216,23 @@ RpcItems read_dimap(const std::string& text, const std::string& path)
 
 } // namespace
 
+std::string geom_beside(const std::string& image)
+{
+    const std::string geom = CPLResetExtension(image.c_str(), "geom");
+    VSIStatBufL status;
+    return VSIStatL(geom.c_str(), &status) == 0 ? geom : "";
+}
+
 RpcMetadata read_rpc_file(const std::string& path)
 {
+    if (is_image(path)) {
+        if (auto stored = stored_rpc(RasterSource(ImageSpec{path}))) {
+            return *stored;
+        }
+        throw InputError("The image " + path +
+                         " is named for its RPC, but GDAL finds none in it "
+                         "or beside it.");
+    }
     const std::string text = read_text(path);
     const bool xml = trimmed(text).starts_with('<');
     const bool rpb = text.find("lineOffset") != std::string::npos;
@@ -219,8 +240,8 @@ RpcMetadata read_rpc_file(const std::string& path)
                            : rpb ? read_rpb(text)
                                  : read_lines(text);
     if (!items.contains("LINE_OFF") && !items.contains("LINE_NUM_COEFF")) {
-        throw InputError(path + " holds no RPC; expected _RPC.TXT, .RPB, .geom or DIMAP's "
-                                "RPC_*.XML.");
+        throw InputError(path + " holds no RPC; expected _RPC.TXT, .RPB, .geom, DIMAP's "
+                                "RPC_*.XML, or an image that has one.");
     }
     RpcMetadata rpc = rpc_from_items(items, path);
     rpc.of_whole_scene = items.contains("LINE_NUM_COEFF_00");

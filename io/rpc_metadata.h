@@ -46,9 +46,14 @@ std::optional<RpcMetadata> stored_rpc(const RasterSource& image);
 std::map<std::string, std::string> rpc_items(const RpcMetadata& rpc);
 
 /// The model of a file given by name: _RPC.TXT ("LINE_OFF: 12"), .geom of OSSIM or OTB,
-/// .RPB ("lineOffset = 12;") or DIMAP's RPC_*.XML, told apart by what they hold. The terms of
+/// .RPB ("lineOffset = 12;") or DIMAP's RPC_*.XML, told apart by what they hold; or another
+/// image (.tif, .jp2, .ntf, .vrt), whose model GDAL finds. The terms of
 /// an RPC00A model are put into the order of RPC00B; DIMAP's count from 1 becomes one from 0.
 /// Throws InputError for a file that is missing, unreadable, or lacks a value.
 RpcMetadata read_rpc_file(const std::string& path);
+
+/// The .geom file beside an image, of which GDAL knows nothing: "a.geom" of "a.tif"; empty
+/// where there is none.
+std::string geom_beside(const std::string& image);
 
 } // namespace hsgm::io

@@ -23,8 +23,14 @@ Dataset with_rpc(GDALDatasetH image, const std::string& rpc_file)
 {
     Dataset copy(GDALCreateCopy(GDALGetDriverByName("VRT"), "", image, FALSE, nullptr, nullptr,
                                 nullptr));
+    RpcMetadata rpc = read_rpc_file(rpc_file);
+    double geo[6];
+    if (rpc.of_whole_scene && GDALGetGeoTransform(image, geo) == CE_None) {
+        rpc.samp_off -= geo[0]; // the first pixel of the scene that the image holds
+        rpc.line_off -= geo[3];
+    }
     CPLStringList items;
-    for (const auto& [key, value] : rpc_items(read_rpc_file(rpc_file))) {
+    for (const auto& [key, value] : rpc_items(rpc)) {
         items.SetNameValue(key.c_str(), value.c_str());
     }
     GDALSetMetadata(copy.get(), items.List(), "RPC");
@@ -87,7 +93,11 @@ VectorMask::VectorMask(const ImageSpec& spec, GDALDatasetH image) : path_(spec.m
     if (wkt.empty()) {
         return;
     }
-    const Dataset modelled = spec.rpc.empty() ? nullptr : with_rpc(image, spec.rpc);
+    std::string rpc = spec.rpc;
+    if (rpc.empty() && GDALGetMetadata(image, "RPC") == nullptr) {
+        rpc = geom_beside(spec.path);
+    }
+    const Dataset modelled = rpc.empty() ? nullptr : with_rpc(image, rpc);
     const Transformer transformer =
         transformer_of(modelled != nullptr ? modelled.get() : image, wkt);
     bool brought = transformer != nullptr;

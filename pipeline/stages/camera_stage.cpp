@@ -27,6 +27,14 @@ geometry::ImagePoint first_pixel(const io::RasterSource& image, const std::strin
     return {t[0], t[3]};
 }
 
+geometry::RpcCamera of_file(const io::RasterSource& image, const std::string& rpc_file)
+{
+    const io::RpcMetadata stored = io::read_rpc_file(rpc_file);
+    const geometry::RpcModel model = to_model(stored);
+    return geometry::RpcCamera(stored.of_whole_scene ? crop(model, first_pixel(image, rpc_file))
+                                                     : model);
+}
+
 } // namespace
 
 geometry::RpcModel to_model(const io::RpcMetadata& stored)
@@ -52,19 +60,19 @@ geometry::RpcModel to_model(const io::RpcMetadata& stored)
 geometry::RpcCamera open_camera(const io::RasterSource& image, const std::string& rpc_file)
 {
     if (!rpc_file.empty()) {
-        const io::RpcMetadata stored = io::read_rpc_file(rpc_file);
-        const geometry::RpcModel model = to_model(stored);
-        return geometry::RpcCamera(
-            stored.of_whole_scene ? crop(model, first_pixel(image, rpc_file)) : model);
+        return of_file(image, rpc_file);
     }
-    const auto stored = io::stored_rpc(image);
-    if (!stored) {
-        throw io::InputError(fmt::format(
-            "{} has no RPC: GDAL finds none in the file, nor in an .RPB, _RPC.TXT or DIMAP "
-            "file beside it. Name one with `rpc:` (_RPC.TXT, .RPB, .geom or DIMAP XML).",
-            image.description()));
+    if (const auto stored = io::stored_rpc(image)) {
+        return geometry::RpcCamera(to_model(*stored));
     }
-    return geometry::RpcCamera(to_model(*stored));
+    if (const std::string geom = io::geom_beside(image.path()); !geom.empty()) {
+        return of_file(image, geom);
+    }
+    throw io::InputError(fmt::format(
+        "{} has no RPC: there is none in the file, nor in an .RPB, _RPC.TXT, DIMAP or .geom "
+        "file beside it. Name one with `rpc:` (_RPC.TXT, .RPB, .geom, DIMAP XML, or an image "
+        "that has one).",
+        image.description()));
 }
 
 } // namespace hsgm::pipeline

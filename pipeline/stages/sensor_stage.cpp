@@ -34,20 +34,6 @@ MapProjection map_of(const io::RasterSource& image, const std::string& crs)
     }
 }
 
-bool is_raster(const std::string& path)
-{
-    std::string end = path.substr(path.find_last_of('.') + 1);
-    std::transform(end.begin(), end.end(), end.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return end == "tif" || end == "tiff" || end == "jp2" || end == "ntf" || end == "vrt";
-}
-
-RpcModel named_model(const io::RasterSource& image, const std::string& path)
-{
-    return is_raster(path) ? open_camera(io::RasterSource(io::ImageSpec{path})).model()
-                           : open_camera(image, path).model();
-}
-
 std::optional<double> number_in(const std::map<std::string, std::string>& items,
                                 const std::string& ending)
 {
@@ -77,7 +63,7 @@ void set_view(OrthoModel& model, const io::RasterSource& image, const io::ImageS
     } else if (spec.view_deg) {
         by_angles(*spec.view_deg);
     } else if (!spec.rpc.empty()) {
-        model.rpc = named_model(image, spec.rpc);
+        model.rpc = open_camera(image, spec.rpc).model();
     } else if (const auto stored = io::stored_rpc(image)) {
         model.rpc = to_model(*stored);
     } else if (const auto view = view_in(image)) {

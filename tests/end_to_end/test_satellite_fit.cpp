@@ -3,18 +3,10 @@
 
 #include "tests/end_to_end/raw_place.h"
 
-#include <fstream>
-#include <iterator>
-
 using namespace hsgm::tests;
+using hsgm::io::samples::bytes_of_file;
 
 namespace {
-
-std::string bytes_of(const std::string& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::string penalties_of(const std::string& raster)
 {
@@ -23,7 +15,7 @@ std::string penalties_of(const std::string& raster)
 
 json likeness_of(const std::string& result)
 {
-    return json::parse(bytes_of(result + "/run.json"))["geometry"]["likeness"];
+    return json::parse(bytes_of_file(result + "/run.json"))["geometry"]["likeness"];
 }
 
 } // namespace
@@ -43,14 +35,15 @@ TEST_CASE("penalties fit how alike the images of a raw pair are, unless they are
     // The configuration that the run keeps says the same as the one it was given.
     REQUIRE(run_hsgm({"run", place / "fitted/config.used.yaml", "-o", place / "again"}).code ==
             0);
-    CHECK(bytes_of(place / "again/dsm.tif") == bytes_of(place / "fitted/dsm.tif"));
+    CHECK(bytes_of_file(place / "again/dsm.tif") == bytes_of_file(place / "fitted/dsm.tif"));
 
     for (const char* given : {"matcher.penalties=fixed", "matcher.p2=192"}) {
         CAPTURE(given);
         REQUIRE(place.run("fixed", {"--set", given}).code == 0);
         CHECK(penalties_of(place / "fixed/dsm.tif") == "p1 24, p2 192, half at tone step 5");
         CHECK(likeness_of(place / "fixed").is_null());
-        CHECK(bytes_of(place / "fixed/dsm.tif") != bytes_of(place / "fitted/dsm.tif"));
+        CHECK(bytes_of_file(place / "fixed/dsm.tif") !=
+              bytes_of_file(place / "fitted/dsm.tif"));
         std::filesystem::remove_all(place / "fixed");
     }
     // Fitted all the same where that is asked for.
@@ -64,7 +57,7 @@ TEST_CASE("penalties fit how alike the images of a raw pair are, unless they are
 TEST_CASE("images in which noise has drowned the texture keep their penalties")
 {
     const RawPlace place;
-    std::string scene = bytes_of(place / "scene.yaml");
+    std::string scene = bytes_of_file(place / "scene.yaml");
     for (std::size_t at = 0; (at = scene.find("noise_gray: 5", at)) != std::string::npos;) {
         scene.replace(at, 13, "noise_gray: 60");
     }

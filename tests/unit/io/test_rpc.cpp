@@ -275,3 +275,12 @@ TEST_CASE("RPC files that cannot be used are refused with what is wrong")
     CHECK(refusal(changed("LAT_SCALE:  0.089999999999999997", "LAT_SCALE: 0"))
               .find("a scale of 0") != std::string::npos);
 }
+
+TEST_CASE("a .geom beside an image is found by the image's name")
+{
+    const TemporaryFolder folder;
+    CHECK(geom_beside(folder / "a.b.tif").empty());
+    put(folder, "a.b.geom", "");
+    CHECK(geom_beside(folder / "a.b.tif") == folder / "a.b.geom");
+    CHECK(geom_beside(folder / "a.tif").empty());
+}
