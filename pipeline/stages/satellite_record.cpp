@@ -20,7 +20,7 @@ std::string describe_geometry(const geometry::PairGeometry& pair)
     }
     std::string likeness;
     if (pair.likeness) {
-        likeness = fmt::format("; {:.1f} % of the windows looked at unlike",
+        likeness = fmt::format("; {:.1f} % of windows unlike",
                                100 * pair.likeness->unlike_share);
     }
     return fmt::format(
