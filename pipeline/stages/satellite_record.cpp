@@ -20,8 +20,8 @@ std::string describe_geometry(const geometry::PairGeometry& pair)
     }
     std::string likeness;
     if (pair.likeness) {
-        likeness = fmt::format("; {:.1f} % of windows unlike",
-                               100 * pair.likeness->unlike_share);
+        likeness =
+            fmt::format("; {:.1f} % of windows unlike", 100 * pair.likeness->unlike_share);
     }
     return fmt::format(
         "{}; heights {:.0f} to {:.0f} m above the ellipsoid; frame of {} x {} px "

@@ -3,7 +3,7 @@
 
     tests/benchmarks/satellites.py [--hsgm build/hsgm] [--data ../shared/data] [--set KEY=VALUE ...] [TABLE ...]
 
-Tables: pair, step, penalties, ortho, fused, real. All with default options but for --set. Needs GDAL's Python
+Tables: pair, step, penalties, ortho, fused, seams, real. All with default options but for --set. Needs GDAL's Python
 bindings and numpy (Debian: python3-gdal python3-numpy).
 """
 
@@ -173,6 +173,72 @@ def beside_s2p(result):
                                  data("sat_reunion_pair", "expected_dsm_s2p.tif"), "--align", "none", "--json"))
 
 
+def cubic(positions, nodes):
+    """Lagrange's cubic, as the program's lattices are read: the first of four nodes, and their weights."""
+    cell = numpy.clip(numpy.floor(positions).astype(int), 1, nodes - 3)
+    t = positions - cell
+    return cell - 1, numpy.stack([-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
+                                  -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6])
+
+
+def ground_points(result):
+    """x, y and height of every pixel of the frame, NaN where it has no disparity."""
+    with open(os.path.join(result, "geometry.json"), encoding="ascii") as file:
+        geometry = json.load(file)
+    nodes, ground = geometry["ground"]["nodes"], geometry["ground"]
+    values = numpy.array(nodes["values"]).reshape(nodes["rows"], nodes["cols"], 4, 4)[..., :3]
+    raster = gdal.Open(os.path.join(result, "disparity.tif"))
+    d = raster.ReadAsArray().astype(float)
+    d[d == raster.GetRasterBand(1).GetNoDataValue()] = numpy.nan
+    top, down = cubic((numpy.arange(d.shape[0]) - nodes["first_row"]) / nodes["step"], nodes["rows"])
+    first, across = cubic((numpy.arange(d.shape[1]) - nodes["first_col"]) / nodes["step"], nodes["cols"])
+    rows = sum(down[k][:, None, None, None] * values[top + k] for k in range(4))
+    layers = sum(across[k][None, :, None, None] * rows[:, first + k] for k in range(4))
+    low, high = ground["disparity_min_px"], ground["disparity_max_px"]
+    t = (d - low) / (high - low) * 3
+    weights = (-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
+               t * (t - 1) * (t - 2) / 6)
+    return [sum(w * layers[..., k, channel] for k, w in enumerate(weights)) for channel in range(3)]
+
+
+def errors_in_frame(result):
+    """Of the heights of the frame's pixels, after the shift that `evaluate dsm` finds."""
+    x, y, height = ground_points(result)
+    shift = score(result)["shift"]
+    raster = gdal.Open(data(SCENE, "truth_dsm.tif"))
+    truth, geo = raster.ReadAsArray().astype(float), raster.GetGeoTransform()
+    with numpy.errstate(invalid="ignore"):
+        col = numpy.floor((x - shift["east_m"] - geo[0]) / geo[1])
+        row = numpy.floor((y - shift["north_m"] - geo[3]) / geo[5])
+        inside = (col >= 0) & (row >= 0) & (col < truth.shape[1]) & (row < truth.shape[0])
+    col, row = numpy.where(inside, col, 0).astype(int), numpy.where(inside, row, 0).astype(int)
+    return numpy.where(inside, height - shift["up_m"] - truth[row, col], numpy.nan)
+
+
+def border_ratio(jumps, side):
+    """Median jump across the borders of a grid to that more than 4 px from any; and the same of grids that lie
+    elsewhere, where there is no border: the middle 95 % of them."""
+    def ratio(phase):
+        away = (numpy.arange(jumps.shape[1]) + 1 - phase) % side
+        elsewhere = numpy.minimum(away, side - away) > 4
+        return numpy.nanmedian(jumps[:, away == 0]) / numpy.nanmedian(jumps[:, elsewhere])
+    # Some 60 grids say as much as all, and those of the windows, of 64 px, are left out.
+    phases = [p for p in range(5, side - 4, max(1, side // 60)) if min(p % 64, 64 - p % 64) > 4]
+    low, high = numpy.percentile([ratio(phase) for phase in phases], [2.5, 97.5])
+    return f"{ratio(0):.3f} ({low:.2f} to {high:.2f})"
+
+
+def seams(folder, settings):
+    print("### Seams: jumps of the error at borders to those elsewhere (of grids without borders)\n")
+    tables.header("borders of", "between columns", "between rows")
+    result, _, _ = run(folder, "seams", of_views("left", "right"), settings)
+    error = errors_in_frame(result)
+    across, down = numpy.abs(numpy.diff(error, axis=1)), numpy.abs(numpy.diff(error, axis=0)).T
+    for name, side in (("windows", 64), ("tiles", 256), ("tiles", 512), ("tiles", 1024)):
+        tables.row(f"{name}, {side} px", border_ratio(across, side), border_ratio(down, side))
+    print()
+
+
 def raw_image(place, name):
     geom = data(place, os.path.splitext(name)[0] + ".geom")
     return {"path": data(place, name)} | ({"rpc": geom} if os.path.exists(geom) else {})
@@ -214,7 +280,7 @@ def real(folder, settings):
     print()
 
 
-TABLES = {"pair": pair, "step": step, "penalties": penalties, "ortho": ortho, "fused": fused, "real": real}
+TABLES = {"pair": pair, "step": step, "penalties": penalties, "ortho": ortho, "fused": fused, "seams": seams, "real": real}
 
 
 def main():

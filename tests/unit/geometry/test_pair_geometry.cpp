@@ -68,7 +68,8 @@ struct RowParallax {
 };
 
 /// AKAZE features, matched by their bits where disparity and row fit, then windows of 21 px
-/// round them by least squares on smoothed images.
+/// round them by least squares on smoothed images; those that know their own row to a
+/// twentieth of a pixel.
 RowParallax measure(const PairGeometry& pair, const SensorImage& left_image,
                     const SensorImage& right_image)
 {
@@ -101,7 +102,7 @@ RowParallax measure(const PairGeometry& pair, const SensorImage& left_image,
     }
     std::vector<double> offs;
     for (const TiePoint& point :
-         samples::match_windows(points, {0, 0, left}, {0, 0, right}, 10, 0.9)) {
+         samples::match_windows(points, {0, 0, left}, {0, 0, right}, 10, 0.9, 0.05)) {
         offs.push_back(point.row_parallax_px());
     }
     // Wrong matches are those further off than three times the robust deviation.
@@ -132,7 +133,7 @@ RowParallax measure(const PairGeometry& pair, const SensorImage& left_image,
     return result;
 }
 
-// `rms_px` bounds what was found when this was written; the aim is 0.15 px.
+// `rms_px` bounds what was found when this was written; the aim is 0.15 px for all.
 void check(const SensorImage& left, const SensorImage& right, double lowest_m, double highest_m,
            double rms_px)
 {
@@ -160,7 +161,7 @@ TEST_CASE("real pairs have no row parallax left, and their heights lie within th
           sensor("sat_gizeh_phr/img2.tif", "sat_gizeh_phr/img2.geom"), 70, 213, 0.07);
     check(sensor("sat_kahramanmaras_pre/img1.tif", "sat_kahramanmaras_pre/img1.geom"),
           sensor("sat_kahramanmaras_pre/img2.tif", "sat_kahramanmaras_pre/img2.geom"), 690, 750,
-          0.18);
+          0.15);
 }
 
 TEST_CASE("a known pointing error is found to a twentieth of a pixel")

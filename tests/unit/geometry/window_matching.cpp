@@ -84,6 +84,8 @@ public:
     FramePoint place() const { return {partner_.row + p_[0], partner_.col + p_[1]}; }
     double last_step_px() const { return last_step_px_; }
     double correlation() const { return correlation_; }
+    /// Of the shift across the rows, by what the least squares leave over.
+    double row_deviation_px() const { return row_deviation_px_; }
 
 private:
     const FramePatch& left_;
@@ -94,6 +96,7 @@ private:
     Parameters p_ = Parameters::Zero();
     double last_step_px_ = 0;
     double correlation_ = 0;
+    double row_deviation_px_ = 0;
 };
 
 bool Window::improve()
@@ -101,6 +104,7 @@ bool Window::improve()
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
     Parameters right_side = Parameters::Zero();
     double n = 0;
+    double squares = 0;
     double sum_a = 0;
     double sum_b = 0;
     double sum_aa = 0;
@@ -121,6 +125,7 @@ bool Window::improve()
             const double rest = a->value - (gain * b->value + p_[5]);
             normal += slope * slope.transpose();
             right_side += slope * rest;
+            squares += rest * rest;
             ++n;
             sum_a += a->value;
             sum_b += b->value;
@@ -134,7 +139,10 @@ bool Window::improve()
         return false;
     }
     correlation_ = (sum_ab - sum_a * sum_b / n) / std::sqrt(variance);
-    const Parameters step = normal.ldlt().solve(right_side);
+    const auto solver = normal.ldlt();
+    const Parameters step = solver.solve(right_side);
+    row_deviation_px_ = std::sqrt(squares / (n - static_cast<double>(step.size())) *
+                                  solver.solve(Parameters::Unit(0))[0]);
     if (!step.allFinite()) {
         return false;
     }
@@ -147,7 +155,7 @@ bool Window::improve()
 
 std::vector<TiePoint> match_windows(const std::vector<TiePoint>& points, const FramePatch& left,
                                     const FramePatch& right, int radius_px,
-                                    double least_correlation)
+                                    double least_correlation, double most_deviation_px)
 {
     std::vector<TiePoint> refined;
     for (const TiePoint& point : points) {
@@ -167,7 +175,8 @@ std::vector<TiePoint> match_windows(const std::vector<TiePoint>& points, const F
             }
         }
         if (whole && window.last_step_px() < kDonePx &&
-            window.correlation() >= least_correlation) {
+            window.correlation() >= least_correlation &&
+            window.row_deviation_px() <= most_deviation_px) {
             refined.push_back({centre, window.place()});
         }
     }
