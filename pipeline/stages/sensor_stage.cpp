@@ -109,11 +109,14 @@ std::optional<std::array<double, 2>> view_in(const io::RasterSource& image)
     if (azimuth && incidence) {
         return std::array{*azimuth, *incidence};
     }
+    // GDAL gives the items of an .IMD file the names of the older version R.
     const auto imd = image.metadata("IMD");
-    const auto mean_azimuth = number_in(imd, "meanSatAz");
-    const auto mean_elevation = number_in(imd, "meanSatEl");
-    if (mean_azimuth && mean_elevation) {
-        return std::array{*mean_azimuth, 90 - *mean_elevation};
+    for (const std::string prefix : {".s", ".meanS"}) {
+        const auto satellite_azimuth = number_in(imd, prefix + "atAz");
+        const auto elevation = number_in(imd, prefix + "atEl");
+        if (satellite_azimuth && elevation) {
+            return std::array{*satellite_azimuth, 90 - *elevation};
+        }
     }
     return std::nullopt;
 }

@@ -143,6 +143,82 @@ TEST_CASE("two orthoimages on a DEM become a DSM, the same for every tiling")
     check_in_place(place.score("rays"));
 }
 
+TEST_CASE("how orthoimages were taken is found in an IMD file beside them")
+{
+    const Place place("plane_m: 310");
+    const std::vector<std::string> plane{"geometry.reference_dem=",
+                                         "geometry.reference_height_m=310"};
+    REQUIRE(place.run("ortho.yaml", "own", plane).code == 0);
+    const auto bare = [&](const std::string& side) {
+        const std::string image = place / ("scene/ortho_" + side + ".tif");
+        const std::string copy = place / (side + ".tif");
+        gdal({"gdal_translate", "-q", "-mo", "VIEW_AZIMUTH_DEG=", "-mo",
+              "VIEW_INCIDENCE_DEG=", image, copy});
+        return copy;
+    };
+    auto settings = plane;
+    settings.push_back("pair={left: " + bare("left") + ", right: " + bare("right") + "}");
+    says(place.run("ortho.yaml", "r", settings), 3, "nothing says how the orthoimage");
+    for (const char* side : {"left", "right"}) {
+        const json own =
+            gdalinfo(place / ("scene/ortho_" + std::string(side) + ".tif"))["metadata"][""];
+        const double elevation = 90 - std::stod(own["VIEW_INCIDENCE_DEG"].get<std::string>());
+        put_bytes(place / (std::string(side) + ".IMD"),
+                  "version = \"AA\";\nBEGIN_GROUP = IMAGE_1\n\tsatId = \"WV02\";\n"
+                  "\tmeanSatAz = " +
+                      own["VIEW_AZIMUTH_DEG"].get<std::string>() + ";\n\tmeanSatEl = " +
+                      std::to_string(elevation) + ";\nEND_GROUP = IMAGE_1\nEND;\n");
+    }
+    const Outcome outcome = place.run("ortho.yaml", "imd", settings);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    // Angles of fewer digits: the same to a hundredth of a metre.
+    const json own = place.score("own");
+    const json imd = place.score("imd");
+    CHECK(std::abs(own["rmse_m"].get<double>() - imd["rmse_m"].get<double>()) < 0.01);
+    check_good(imd);
+    check_in_place(imd);
+}
+
+TEST_CASE("orthoimages may have different bands")
+{
+    const Place place("plane_m: 310");
+    const std::vector<std::string> plane{"geometry.reference_dem=",
+                                         "geometry.reference_height_m=310"};
+    // The left one's pixels are its fourth band, beside others.
+    gdal({"gdal_translate",
+          "-q",
+          "-b",
+          "1",
+          "-b",
+          "1",
+          "-b",
+          "1",
+          "-b",
+          "1",
+          "-scale_1",
+          "0",
+          "4000",
+          "4000",
+          "0",
+          "-scale_2",
+          "0",
+          "4000",
+          "4000",
+          "0",
+          place / "scene/ortho_left.tif",
+          place / "four.tif"});
+    auto settings = plane;
+    settings.push_back("pair.left={path: " + place / "four.tif" + ", band: 4}");
+    const Outcome outcome = place.run("ortho.yaml", "bands", settings);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    REQUIRE(place.run("ortho.yaml", "own", plane).code == 0);
+    CHECK(snapshot(place / "bands").at("dsm.tif") == snapshot(place / "own").at("dsm.tif"));
+    settings.back() = "pair.left={path: " + place / "four.tif" + ", band: 5}";
+    says(place.run("ortho.yaml", "r", settings), 3, "band 5");
+}
+
 TEST_CASE("orthoimages may lie on a plane, on grids and maps of their own")
 {
     const Place place("plane_m: 310");

@@ -2,7 +2,10 @@
 
 #include "tests/end_to_end/raw_place.h"
 
+#include <chrono>
+#include <csignal>
 #include <fstream>
+#include <thread>
 
 using namespace hsgm::tests;
 
@@ -135,6 +138,42 @@ TEST_CASE("three views become one DSM, more complete than any pair's and no nois
     std::filesystem::remove_all(views / ("fused/pairs/" + names[1]));
     REQUIRE(views.run("fused", {"--resume"}).code == 0);
     same_rasters(before, snapshot(views / "fused"));
+}
+
+TEST_CASE("a run of several pairs that is killed goes on, to the same bytes")
+{
+    const ThreeViews views;
+    REQUIRE(views.run("whole").code == 0);
+    const Snapshot whole = snapshot(views / "whole");
+    for (const int at_pair : {1, 2}) {
+        CAPTURE(at_pair);
+        const std::string result = "killed" + std::to_string(at_pair);
+        {
+            RunningProgram run({hsgm_program(), "run", views / "all.yaml", "-o", views / result,
+                                "--threads", "2"});
+            // Killed when its pair of that number has begun.
+            const auto begun = [&] {
+                int count = 0;
+                const std::filesystem::path pairs = views / (result + "/pairs");
+                std::error_code none;
+                for (const auto& entry : std::filesystem::directory_iterator(pairs, none)) {
+                    count += entry.path().extension() == ".yaml";
+                }
+                return count;
+            };
+            while (begun() < at_pair && !run.has_ended()) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(500));
+            run.signal(SIGKILL);
+            CHECK(run.wait().code == -SIGKILL);
+        }
+        CHECK_FALSE(std::filesystem::exists(views / (result + "/dsm.tif")));
+        const Outcome resumed = views.run(result, {"--resume"});
+        INFO(resumed.err);
+        REQUIRE(resumed.code == 0);
+        same_rasters(whole, snapshot(views / result));
+    }
 }
 
 TEST_CASE("the order of a list of pairs changes nothing, and one that fails is told")
