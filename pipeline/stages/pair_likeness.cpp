@@ -19,9 +19,9 @@ constexpr int kPatchesAcross = 4;
 
 constexpr int kWindowPx = 7;
 constexpr int kWindowStepPx = 3;
-/// Windows that correlate by less hold more noise and change than texture: matching them takes
-/// neighbours that agree. Of correlations from 0.5 to 0.95, this one told best which pairs
-/// gain from large penalties (docs/geometry.md).
+/// Windows that correlate by less hold much noise and change beside their texture: matching
+/// them takes neighbours that agree. How many there are tells which pairs gain from large
+/// penalties (docs/geometry.md).
 constexpr double kAlike = 0.8;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
