@@ -1,6 +1,7 @@
 #include "pipeline/stages/geometry_search.h"
 
 #include "io/error.h"
+#include "pipeline/freed_memory.h"
 #include "pipeline/geometry/disparity_bounds.h"
 #include "pipeline/geometry/error.h"
 #include "pipeline/geometry/tie_points.h"
@@ -350,9 +351,11 @@ void Search::begin()
         left_.reduce(reduction_);
         right_.reduce(reduction_);
         find_rough_pointing();
+        give_back_freed_memory(); // the plan counts steps one by one
     }
     if (!known) {
         find_heights();
+        give_back_freed_memory();
     }
     if (relief_) {
         smooth_relief(known);
@@ -365,6 +368,7 @@ PairGeometry Search::run()
     level_m_ = std::round((heights_.low_m + heights_.high_m) / 2);
     if (options_.pointing) {
         find_pointing();
+        give_back_freed_memory();
     }
     return finish();
 }

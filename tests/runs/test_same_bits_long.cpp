@@ -20,7 +20,7 @@ TEST_CASE("every output of a large pair has one SHA-256 for any threads, memory 
 TEST_CASE("every output of two raw images of megapixels has one SHA-256 for any threads, "
           "memory and shards")
 {
-    SameBits same("[1500, 1500]");
+    SameBits same("[2700, 2700]");
     for (const char* threads : {"1", "2", "4"}) {
         same.run({"--threads", threads});
     }
