@@ -110,11 +110,11 @@ TEST_CASE("three views become one DSM, more complete than any pair's and no nois
     CHECK(agreed > 100000);
 
     // Listed the other way round, other threads and tiles, and one image twice as a map.
+    const std::string listed =
+        "pairs=[{left: third, right: right}, {left: third, right: left}, "
+        "{left: left, right: right}]";
     const Outcome again =
-        views.run("again", {"--set",
-                            "pairs=[{left: third, right: right}, {left: third, right: left}, "
-                            "{left: left, right: right}]",
-                            "--tile-size", "100", "--set", "run.threads=1"});
+        views.run("again", {"--set", listed, "--tile-size", "100", "--set", "run.threads=1"});
     INFO(again.err);
     const auto chosen = views.record("fused")["pairs"];
     std::vector<std::string> names;
