@@ -3,6 +3,7 @@
 // Shared by the .cpp files of this folder. Never include it from a header: GDAL's names
 // must not reach the rest of the program.
 
+#include "io/geo_reference.h"
 #include "io/pixel_type.h"
 
 #include <cpl_error.h>
@@ -45,6 +46,9 @@ using Dataset = std::unique_ptr<void, DatasetCloser>;
 
 /// Opens a raster for reading; throws InputError with GDAL's own message.
 Dataset open_raster(const std::string& path);
+
+/// Where an open raster lies.
+GeoReference geo_reference_of(GDALDatasetH dataset);
 
 /// GDAL's name of a pixel type, and back; nothing where we have no such type.
 GDALDataType gdal_type(PixelType type);

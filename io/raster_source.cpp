@@ -210,15 +210,15 @@ std::string RasterSource::description() const
     return state_->spec.path + ", band " + std::to_string(std::max(state_->spec.band, 1));
 }
 
-GeoReference RasterSource::geo_reference() const
+GeoReference geo_reference_of(GDALDatasetH dataset)
 {
     ErrorCollector errors;
     GeoReference geo;
     std::array<double, 6> transform{};
-    if (GDALGetGeoTransform(state_->dataset.get(), transform.data()) == CE_None) {
+    if (GDALGetGeoTransform(dataset, transform.data()) == CE_None) {
         geo.transform = transform;
     }
-    if (OGRSpatialReferenceH crs = GDALGetSpatialRef(state_->dataset.get())) {
+    if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset)) {
         const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
         char* wkt = nullptr;
         if (OSRExportToWktEx(crs, &wkt, options) == OGRERR_NONE) {
@@ -227,6 +227,11 @@ GeoReference RasterSource::geo_reference() const
         CPLFree(wkt);
     }
     return geo;
+}
+
+GeoReference RasterSource::geo_reference() const
+{
+    return geo_reference_of(state_->dataset.get());
 }
 
 std::vector<std::string> RasterSource::files() const

@@ -120,6 +120,23 @@ RpcItems rpc_items(const RpcMetadata& rpc)
             {"SAMP_DEN_COEFF", text_of(rpc.samp_den)}};
 }
 
+std::array<double, 2> first_pixel_in_scene(const RpcMetadata& rpc, const GeoReference& geo,
+                                           const std::string& image)
+{
+    if (!rpc.of_whole_scene || !geo.transform || !geo.wkt.empty()) {
+        return {};
+    }
+    const auto& t = *geo.transform;
+    if (t[1] != 1 || t[2] != 0 || t[4] != 0 || t[5] != 1) {
+        const std::array<double, 4> steps{t[1], t[4], t[2], t[5]};
+        throw InputError(rpc.origin + " is of a whole scene, but the geotransform of " + image +
+                         " does not say which of its pixels the image holds: expected steps "
+                         "of 1 0 0 1 px, found " +
+                         text_of(steps) + ". Give an RPC of the image itself.");
+    }
+    return {t[0], t[3]};
+}
+
 std::optional<RpcMetadata> stored_rpc(const RasterSource& image)
 {
     const RpcItems items = image.metadata("RPC");

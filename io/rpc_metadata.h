@@ -52,6 +52,13 @@ std::map<std::string, std::string> rpc_items(const RpcMetadata& rpc);
 /// Throws InputError for a file that is missing, unreadable, or lacks a value.
 RpcMetadata read_rpc_file(const std::string& path);
 
+/// At which pixel of its scene an image begins, sample and line: the corner of its first pixel
+/// is that of a pixel of the scene, and so is its centre. (0, 0) for a model that is the
+/// image's own, and for an image without a geotransform or on a map. Throws InputError where
+/// the geotransform has other steps than one pixel.
+std::array<double, 2> first_pixel_in_scene(const RpcMetadata& rpc, const GeoReference& geo,
+                                           const std::string& image);
+
 /// The .geom file beside an image, of which GDAL knows nothing: "a.geom" of "a.tif"; empty
 /// where there is none.
 std::string geom_beside(const std::string& image);

@@ -19,16 +19,14 @@ struct TransformerDestroyer {
 using Transformer = std::unique_ptr<void, TransformerDestroyer>;
 
 // The image with the model of another file as its own.
-Dataset with_rpc(GDALDatasetH image, const std::string& rpc_file)
+Dataset with_rpc(GDALDatasetH image, const std::string& image_path, const std::string& rpc_file)
 {
     Dataset copy(GDALCreateCopy(GDALGetDriverByName("VRT"), "", image, FALSE, nullptr, nullptr,
                                 nullptr));
     RpcMetadata rpc = read_rpc_file(rpc_file);
-    double geo[6];
-    if (rpc.of_whole_scene && GDALGetGeoTransform(image, geo) == CE_None) {
-        rpc.samp_off -= geo[0]; // the first pixel of the scene that the image holds
-        rpc.line_off -= geo[3];
-    }
+    const auto first = first_pixel_in_scene(rpc, geo_reference_of(image), image_path);
+    rpc.samp_off -= first[0];
+    rpc.line_off -= first[1];
     CPLStringList items;
     for (const auto& [key, value] : rpc_items(rpc)) {
         items.SetNameValue(key.c_str(), value.c_str());
@@ -97,7 +95,7 @@ VectorMask::VectorMask(const ImageSpec& spec, GDALDatasetH image) : path_(spec.m
     if (rpc.empty() && GDALGetMetadata(image, "RPC") == nullptr) {
         rpc = geom_beside(spec.path);
     }
-    const Dataset modelled = rpc.empty() ? nullptr : with_rpc(image, rpc);
+    const Dataset modelled = rpc.empty() ? nullptr : with_rpc(image, spec.path, rpc);
     const Transformer transformer =
         transformer_of(modelled != nullptr ? modelled.get() : image, wkt);
     bool brought = transformer != nullptr;

@@ -276,7 +276,7 @@ Configuration read_configuration(io::ConfigDocument& document)
     job.geometry = read_geometry(geometry, kind);
     job.satellite = read_satellite(geometry, root.section("dsm"), kind);
     if (job.satellite) {
-        job.satellite->fit_penalties = fit_penalties;
+        job.satellite->search.likeness = fit_penalties;
     }
     const auto creation_options = output.texts("creation_options");
     const bool hillshade = output.flag("hillshade", true);

@@ -15,7 +15,6 @@ struct SatelliteOptions {
     int dsm_min_confidence = 180; ///< cells of less have no value
     /// A geometry whose corrections of both images are taken; empty: they are to be found.
     std::string pointing_from;
-    bool fit_penalties = true; ///< of the matcher, to how alike the images are
     std::string stored; ///< a geometry that an earlier run found; empty: it is to be found
     /// What planning found; every stage reads it and none changes it.
     std::shared_ptr<const geometry::PairGeometry> pair;

@@ -261,7 +261,7 @@ PairGeometry read(const json& j)
     }
     if (j.contains("likeness")) {
         const json& likeness = j.at("likeness");
-        pair.likeness = Likeness{likeness.at("windows"), likeness.at("unlike_share")};
+        pair.likeness = Likeness{likeness.at("windows"), likeness.at("unlike")};
     }
     return pair;
 }
@@ -287,7 +287,7 @@ std::string to_json(const PairGeometry& pair)
     }
     if (pair.likeness) {
         j["likeness"] = {{"windows", pair.likeness->windows},
-                         {"unlike_share", pair.likeness->unlike_share}};
+                         {"unlike", pair.likeness->unlike}};
     }
     return j.dump(1) + "\n";
 }

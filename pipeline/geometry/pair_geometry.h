@@ -17,8 +17,10 @@ namespace hsgm::geometry {
 /// How alike the images are where samples of them were matched: what noise, haze and change
 /// between the two dates leave of the texture.
 struct Likeness {
-    int windows = 0;         ///< 7 x 7 pixels of the frame each, matched throughout
-    double unlike_share = 0; ///< of them, those that correlate by less than 0.8
+    int windows = 0; ///< 7 x 7 pixels of the frame each, matched throughout
+    int unlike = 0;  ///< of them, those that correlate by less than 0.8
+
+    double unlike_share() const { return windows > 0 ? double(unlike) / windows : 0; }
 };
 
 /// All that is known of a pair before it is matched. Made once, stored, and then only read:

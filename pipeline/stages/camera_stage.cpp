@@ -8,31 +8,12 @@ namespace hsgm::pipeline {
 
 namespace {
 
-// Where in its scene an image begins: the corner of its first pixel is that of a pixel of
-// the scene, and so is its centre.
-geometry::ImagePoint first_pixel(const io::RasterSource& image, const std::string& rpc)
-{
-    const io::GeoReference geo = image.geo_reference();
-    if (!geo.transform || !geo.wkt.empty()) {
-        return {};
-    }
-    const auto& t = *geo.transform;
-    if (t[1] != 1 || t[2] != 0 || t[4] != 0 || t[5] != 1) {
-        throw io::InputError(fmt::format(
-            "{} is of a whole scene, but the geotransform of {} does not say which of its "
-            "pixels the image holds: expected steps of (1, 0) and (0, 1) px, found ({}, {}) "
-            "and ({}, {}). Give an RPC of the image itself.",
-            rpc, image.description(), t[1], t[4], t[2], t[5]));
-    }
-    return {t[0], t[3]};
-}
-
 geometry::RpcCamera of_file(const io::RasterSource& image, const std::string& rpc_file)
 {
     const io::RpcMetadata stored = io::read_rpc_file(rpc_file);
-    const geometry::RpcModel model = to_model(stored);
-    return geometry::RpcCamera(stored.of_whole_scene ? crop(model, first_pixel(image, rpc_file))
-                                                     : model);
+    const auto first =
+        io::first_pixel_in_scene(stored, image.geo_reference(), image.description());
+    return geometry::RpcCamera(crop(to_model(stored), {first[0], first[1]}));
 }
 
 } // namespace

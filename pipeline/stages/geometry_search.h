@@ -39,7 +39,7 @@ struct PairGeometryOptions {
     RegionOptions region;            ///< the ground that the frame must hold
     std::string crs;                 ///< of the ground points; empty: the UTM zone
     std::string vertical;            ///< datum of their heights; empty: the ellipsoid
-    bool likeness = false;           ///< measure how alike the images are
+    bool likeness = false;           ///< measure how alike the images are: penalties fit that
 };
 
 /// The model of an image as these options take it.

@@ -77,17 +77,15 @@ void add_windows(const Image<double>& left, const Image<double>& right,
                  const Image<float>& disparity, Likeness& likeness)
 {
     const Image<double> partner = moved(right, disparity);
-    double unlike = std::round(likeness.unlike_share * likeness.windows);
     for (int row = 0; row + kWindowPx <= left.rows(); row += kWindowStepPx) {
         for (int col = 0; col + kWindowPx <= left.cols(); col += kWindowStepPx) {
             const double found = correlation(left, partner, row, col);
             if (!std::isnan(found)) {
                 ++likeness.windows;
-                unlike += found < kAlike ? 1 : 0;
+                likeness.unlike += found < kAlike ? 1 : 0;
             }
         }
     }
-    likeness.unlike_share = likeness.windows > 0 ? unlike / likeness.windows : 0;
 }
 
 Likeness measure_likeness(const SensorView& left_view, const SensorView& right_view,

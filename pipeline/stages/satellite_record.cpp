@@ -21,7 +21,7 @@ std::string describe_geometry(const geometry::PairGeometry& pair)
     std::string likeness;
     if (pair.likeness) {
         likeness =
-            fmt::format("; {:.1f} % of windows unlike", 100 * pair.likeness->unlike_share);
+            fmt::format("; {:.1f} % of windows unlike", 100 * pair.likeness->unlike_share());
     }
     return fmt::format(
         "{}; heights {:.0f} to {:.0f} m above the ellipsoid; frame of {} x {} px "
@@ -52,7 +52,7 @@ nlohmann::ordered_json geometry_json(const geometry::PairGeometry& pair)
     }
     if (pair.likeness) {
         json["likeness"] = {{"windows", pair.likeness->windows},
-                            {"unlike_share", pair.likeness->unlike_share}};
+                            {"unlike_share", pair.likeness->unlike_share()}};
     }
     return json;
 }

@@ -57,8 +57,8 @@ void fit_penalties(Job& job)
 {
     constexpr int kEnoughWindows = 500;
     const auto& likeness = job.satellite->pair->likeness;
-    if (job.satellite->fit_penalties && likeness && likeness->windows >= kEnoughWindows) {
-        matcher::fit_penalties(job.matcher, likeness->unlike_share);
+    if (job.satellite->search.likeness && likeness && likeness->windows >= kEnoughWindows) {
+        matcher::fit_penalties(job.matcher, likeness->unlike_share());
     }
 }
 
@@ -75,7 +75,6 @@ void plan_satellite(Job& job)
             std::tie(left.correction, right.correction) =
                 read_corrections(satellite.pointing_from, job);
         }
-        satellite.search.likeness = satellite.fit_penalties;
         PairGeometry pair = find_pair_geometry(left, right, satellite.search);
         if (!warning.empty()) {
             pair.warnings.push_back(warning);

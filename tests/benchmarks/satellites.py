@@ -165,7 +165,7 @@ def penalties(folder, settings):
 def unlike_share(result):
     with open(os.path.join(result, "geometry.json"), encoding="ascii") as file:
         likeness = json.load(file).get("likeness")
-    return f"{100 * likeness['unlike_share']:.1f} %" if likeness else ""
+    return f"{100 * likeness['unlike'] / likeness['windows']:.1f} %" if likeness else ""
 
 
 def beside_s2p(result):

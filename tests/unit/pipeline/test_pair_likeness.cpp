@@ -54,9 +54,9 @@ TEST_CASE("an image is like itself in another exposure, and unlike noise")
     for (std::int64_t i = 0; i < kSize.area(); ++i) {
         exposed.data()[i] = 3000 + 0.4 * texture.data()[i];
     }
-    CHECK(of(texture, exposed, still).unlike_share == 0);
-    CHECK(of(texture, noise(2, 100), still).unlike_share == 1);
-    CHECK(of(texture, Image<double>(kSize, 7.0), still).unlike_share == 1); // flat
+    CHECK(of(texture, exposed, still).unlike_share() == 0);
+    CHECK(of(texture, noise(2, 100), still).unlike_share() == 1);
+    CHECK(of(texture, Image<double>(kSize, 7.0), still).unlike_share() == 1); // flat
     // A window every third row and column; the last column has no neighbour to lie between.
     CHECK(of(texture, exposed, still).windows == 38 * 51);
 }
@@ -71,7 +71,7 @@ TEST_CASE("the noisier the images, the more of their windows are unlike")
         CAPTURE(deviation);
         const double unlike =
             of(sum(texture, noise(2, deviation)), sum(texture, noise(3, deviation)), still)
-                .unlike_share;
+                .unlike_share();
         CHECK(unlike > before);
         before = unlike;
         if (deviation == 20.0) {
@@ -97,12 +97,12 @@ TEST_CASE("windows are compared with what they were matched to")
             right(row, col) = tone(col + 4.5);
         }
     }
-    CHECK(of(left, right, Image<float>(kSize, 4.5F)).unlike_share == 0);
-    CHECK(of(left, right, Image<float>(kSize, 0.0F)).unlike_share == 1);
+    CHECK(of(left, right, Image<float>(kSize, 4.5F)).unlike_share() == 0);
+    CHECK(of(left, right, Image<float>(kSize, 0.0F)).unlike_share() == 1);
     // Where there is no match, or only beyond the right image, nothing is compared.
     CHECK(of(left, right, Image<float>(kSize, kNone)).windows == 0);
     CHECK(of(left, right, Image<float>(kSize, 200.0F)).windows == 0);
-    CHECK(of(left, right, Image<float>(kSize, kNone)).unlike_share == 0);
+    CHECK(of(left, right, Image<float>(kSize, kNone)).unlike_share() == 0);
     Image<float> half(kSize, 4.5F);
     for (int row = 0; row < kSize.rows; ++row) {
         for (int col = 80; col < kSize.cols; ++col) {
@@ -121,5 +121,5 @@ TEST_CASE("patches add up")
     pipeline::add_windows(texture, texture, still, likeness);
     pipeline::add_windows(texture, noise(2, 100), still, likeness);
     CHECK(likeness.windows == 2 * 38 * 51);
-    CHECK(likeness.unlike_share == 0.5);
+    CHECK(likeness.unlike_share() == 0.5);
 }
